@@ -249,7 +249,7 @@ void add_seams(CLI::App& command, UnwrapArguments& arguments) {
   command
       .add_option("--labels", arguments.labels,
                   "Cut where these differ: the materials, groups or objects of an OBJ file,\n"
-                  "or a property of the faces of a PLY file")
+                  "or a property of the faces of PLY, or of glTF (material)")
       ->group("Charts")
       ->type_name("NAME");
   command
@@ -355,6 +355,11 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
   command->add_flag("--mirrored", arguments.mirrored,
                     "Take charts of an atlas that are mirrored as a whole for their mirror images");
   command
+      ->add_option(
+          "--uv-set", arguments.uv_set,
+          "The UVs of a glTF file that are judged: TEXCOORD_0 (the default), TEXCOORD_1...")
+      ->type_name("NUMBER");
+  command
       ->add_option("--resolution", arguments.resolution,
                    "Texels to the side of a page, which margin and density are said in\n"
                    "[8 to 32768; default 1024]")
@@ -371,7 +376,7 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
   command
       ->add_option("--labels", arguments.labels,
                    "Say the density of each of the materials, groups or objects of an OBJ file,\n"
-                   "or of each value of a property of the faces of a PLY file")
+                   "or of each value of a property of the faces of PLY, or of glTF (material)")
       ->group("Pages")
       ->type_name("NAME");
   command->add_flag("--within-page", arguments.within_page, "Fail where UVs leave [0,1]^2")

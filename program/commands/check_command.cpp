@@ -11,6 +11,7 @@
 #include "commands/progress_bar.h"
 #include "commands/report.h"
 #include "files/atomic_file.h"
+#include "files/gltf_file.h"
 #include "files/mesh_file.h"
 #include "files/split_mesh.h"
 #include "files/surface.h"
@@ -101,7 +102,10 @@ class Check {
 
  private:
   void require_files() const {
-    format_of(arguments_.input);
+    if (format_of(arguments_.input) != MeshFormat::kGltf && arguments_.uv_set > 0) {
+      throw Failure(uv_set_flag() + ": " + arguments_.input +
+                    " has one set of UVs, as all formats but glTF have: leave the option out");
+    }
     require_png_name(arguments_.picture);
     require_distinct({arguments_.input, arguments_.report, arguments_.picture});
     if (!arguments_.quiet || arguments_.print_report)
@@ -114,9 +118,12 @@ class Check {
   void read() {
     bar_.show(0, "read");
     StageClock clock(report_, "read");
-    const Content content = arguments_.labels.empty() ? Content::kUvs : Content::kAll;
+    const Content content = arguments_.uv_set > 0       ? Content::kSurface
+                            : arguments_.labels.empty() ? Content::kUvs
+                                                        : Content::kAll;
     file_ = read_mesh(arguments_.input, content, arguments_.reach);
     require_whole(file_);
+    if (arguments_.uv_set > 0) take_uv_set();
     if (arguments_.float32) {
       round_to_float32(file_.uvs);
       round_to_float32(file_.corner_uvs.values);
@@ -130,6 +137,21 @@ class Check {
     report_.unreferenced_vertices = unreferenced_vertices(file_);
     report_.area = area_of(triangles());
     clock.finish();
+  }
+
+  std::string uv_set_flag() const { return "--uv-set " + std::to_string(arguments_.uv_set); }
+
+  /// The UVs of another set than the first, which every face has to have.
+  void take_uv_set() {
+    file_.uvs = gltf_uvs(file_, arguments_.uv_set);
+    const std::vector<std::uint32_t>& corners = file_.polygons.corners();
+    for (std::uint64_t c = 0; c < corners.size(); ++c) {
+      if (!file_.uvs.empty() && !std::isnan(file_.uvs[2 * std::size_t{corners[c]}])) continue;
+      throw Failure(uv_set_flag() + ": " + arguments_.input + ": face " +
+                    std::to_string(file_.polygons.of_corner(c)) +
+                    " (counted from 0) has no texture coordinates, TEXCOORD_" +
+                    std::to_string(arguments_.uv_set));
+    }
   }
 
   /// What is no disk, or has several UVs at a vertex, is an atlas.
@@ -318,6 +340,7 @@ int check_command(const CheckArguments& arguments) {
   report.options = {{"float32", arguments.float32},
                     {"mirrored", arguments.mirrored},
                     {"weld", arguments.weld},
+                    {"uv-set", std::to_string(arguments.uv_set)},
                     {"resolution", static_cast<std::int64_t>(arguments.resolution)},
                     {"margin", arguments.margin},
                     {"within-page", arguments.within_page},

@@ -76,6 +76,7 @@ struct CheckArguments {
   bool float32 = false;             ///< judge the UVs rounded to single precision
   bool weld = false;                ///< vertices at one place and with one UV count as one
   bool mirrored = false;            ///< charts that are mirrored as a whole are no fault
+  std::uint32_t uv_set = 0;         ///< of glTF: TEXCOORD_ and this number
   std::string labels;               ///< what densities are told by, or ""
   std::uint64_t resolution = 1024;  ///< texels to the side of a page
   double margin = 0;                ///< texels that there have to be

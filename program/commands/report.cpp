@@ -47,6 +47,24 @@ void append_verdict(const Report& report, std::string& text) {
   text += "\n";
 }
 
+/// " by the mean and the seams" where these are missed by the whole; "" where only parts miss them.
+std::string missed_bounds(const beltrami_atlas& atlas, const Target& target) {
+  constexpr double kTolerance = 1e-4;  // as the search has it
+  const auto most_charts =
+      std::max(static_cast<std::uint64_t>(std::max<std::int64_t>(target.charts, 0)),
+               static_cast<std::uint64_t>(atlas.components));
+  const std::pair<bool, const char*> bounds[] = {
+      {atlas.symmetric_dirichlet > target.energy + kTolerance, "the mean"},
+      {target.p99 > 0 && atlas.p99 > target.p99, "the 99th percentile"},
+      {target.charts > 0 && atlas.charts > most_charts, "the charts"},
+      {target.seams > 0 && seam_over_root_area(atlas) > target.seams, "the seams"}};
+  std::string names;
+  for (const auto& [is_missed, name] : bounds) {
+    if (is_missed) names += (names.empty() ? " by " : " and ") + std::string(name);
+  }
+  return names;
+}
+
 void append_atlas(const Report& report, std::string& text) {
   const beltrami_atlas& atlas = *report.atlas;
   append(text, "charts     %llu, seams of %.4g root areas\n",
@@ -61,15 +79,16 @@ void append_atlas(const Report& report, std::string& text) {
   }
   if (!report.target) return;
   const Target& target = *report.target;
-  append(text, "target     %s: %.6g mean", atlas.reached != 0 ? "reached" : "MISSED",
-         target.energy);
+  text +=
+      "target     " + (atlas.reached != 0 ? "reached" : "MISSED" + missed_bounds(atlas, target));
+  append(text, ": %.6g mean", target.energy);
   if (target.p99 > 0) append(text, ", %.6g at the 99th percentile", target.p99);
   if (target.charts > 0) append(text, ", charts up to %lld", static_cast<long long>(target.charts));
   if (target.seams > 0) append(text, ", seams up to %.4g root areas", target.seams);
   text += "\n";
   if (atlas.missed_parts > 0) {
     append(text,
-           "note       %llu %s it, the worst with %.6g: %llu triangles from face %llu "
+           "note       %llu %s it, the worst with %.6g mean: %llu triangles from face %llu "
            "(counted from 0)\n",
            static_cast<unsigned long long>(atlas.missed_parts),
            atlas.missed_parts == 1 ? "part misses" : "parts miss", atlas.missed_energy,
@@ -91,10 +110,12 @@ void append_packing(const Report& report, std::string& text) {
   if (!report.atlas) {
     append(text, "charts     %llu\n", static_cast<unsigned long long>(found.charts));
   }
-  append(text, "pages      %llu of %llu texels, %.1f%% used, margin %.3f texels, %.4g per unit\n",
+  append(text, "pages      %llu of %llu texels, %.1f%% used, margin %.3f texels",
          static_cast<unsigned long long>(found.pages),
-         static_cast<unsigned long long>(found.resolution), 100 * found.utilisation, found.margin,
-         found.texels_per_unit);
+         static_cast<unsigned long long>(found.resolution), 100 * found.utilisation, found.margin);
+  // Of a surface that is small enough no double holds the density.
+  if (std::isfinite(found.texels_per_unit)) append(text, ", %.4g per unit", found.texels_per_unit);
+  text += "\n";
   const double asked = asked_margin(report);
   if (found.margin < asked) {
     append(text,
@@ -292,9 +313,13 @@ std::string to_summary(const Report& report, const std::string& written) {
            static_cast<unsigned long long>(report.failed_charts.front().chart.first_face));
   }
   if (report.status == "BELTRAMI_NOT_INJECTIVE_FLOAT32") {
-    append(
-        text,
-        "note       injective in double precision only: write .obj or .ply, without --float32\n");
+    // Charts that came overlapping are so in any numbers, and of which kind they are is not known.
+    text +=
+        report.command == "pack"
+            ? "note       single precision is to blame, or charts that overlapped before: write "
+              ".obj or .ply, without --float32\n"
+            : "note       injective in double precision only: write .obj or .ply, without "
+              "--float32\n";
   }
   if (report.result && report.result->degenerate_faces > 0) {
     append(text, "note       %llu faces have no area, the first is %llu (counted from 0)\n",

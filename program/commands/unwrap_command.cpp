@@ -154,7 +154,10 @@ class Unwrapping {
     const bool islands = options_.integer(BELTRAMI_OPTION_CUT) == BELTRAMI_CUT_ISLANDS;
     file_ =
         read_mesh(arguments_.input, islands ? Content::kAll : Content::kSurface, arguments_.reach);
-    if (becomes_gltf()) file_ = as_gltf(file_, islands ? Content::kAll : Content::kSurface);
+    if (becomes_gltf()) {
+      given_ = {file_.vertex_count(), unreferenced_vertices(file_)};
+      file_ = as_gltf(file_, islands ? Content::kAll : Content::kSurface);
+    }
     if (writes_gltf()) {
       require_uv_set(file_, arguments_.uv_set);
       for (const std::string& path : gltf_output_paths(file_, arguments_.output)) {
@@ -185,7 +188,7 @@ class Unwrapping {
     }
     if (!arguments_.pins.empty()) pins_ = read_pins(arguments_.pins, file_);
     if (!arguments_.straighten.empty()) straight_ = read_straight(arguments_.straighten, file_);
-    report_.vertices = file_.vertex_count();
+    report_.vertices = given_ ? given_->count : file_.vertex_count();
     report_.faces = file_.polygons.size();
     report_.short_faces = file_.short_faces;
     clock.finish();
@@ -249,6 +252,7 @@ class Unwrapping {
     beltrami_atlas atlas{};
     atlas.struct_size = sizeof atlas;
     require(beltrami_get_atlas(context, &atlas));
+    if (given_) count_as_given(atlas);
     report_.atlas = atlas;
     if (atlas.searched != 0) {
       report_.target = {
@@ -285,6 +289,16 @@ class Unwrapping {
       require(beltrami_get_atlas_stage(context, i, &stage));
       report_.stages.push_back({stage.name, stage.seconds, stage.cpu_seconds, stage.iterations});
     }
+  }
+
+  /// glTF has a vertex for each normal and UV of one of IN, all at one place: what is said of
+  /// vertices is of those of IN.
+  void count_as_given(beltrami_atlas& atlas) const {
+    const std::uint64_t used = given_->count - given_->unused;
+    const std::uint64_t places =
+        file_.vertex_count() - atlas.unused_vertices - atlas.welded_vertices;
+    atlas.welded_vertices = used - std::min(used, places);
+    atlas.unused_vertices = given_->unused;
   }
 
   beltrami_atlas_certificate certificate(std::int32_t type) const {
@@ -463,6 +477,10 @@ class Unwrapping {
   Report& report_;
   ProgressBar bar_;
   Context context_;
+  struct Vertices {
+    std::uint64_t count, unused;
+  };
+  std::optional<Vertices> given_;  ///< of IN, where glTF has others
   MeshFile file_;
   std::vector<std::uint64_t> labels_, materials_;
   Paint paint_;

@@ -29,6 +29,24 @@ std::string_view keyword_of(const Statement& statement) {
   return text.substr(0, text.find_first_of(" \t"));
 }
 
+bool has_statement(const MeshFile& file, std::string_view name) {
+  return std::any_of(kStatements.begin(), kStatements.end(), [&](const auto& known) {
+    return known.first == name &&
+           std::any_of(file.statements.begin(), file.statements.end(),
+                       [&](const Statement& s) { return keyword_of(s) == known.second; });
+  });
+}
+
+/// The name that the file has for it: OBJ has "materials", glTF "material", and either is meant.
+std::string name_in(const MeshFile& file, const std::string& name) {
+  const auto holds = [&](const std::string& known) {
+    return has_statement(file, known) || find_column(file.face_columns, known) != nullptr;
+  };
+  const bool plural = name.ends_with('s');
+  const std::string other = plural ? name.substr(0, name.size() - 1) : name + "s";
+  return !holds(name) && holds(other) ? other : name;
+}
+
 /// Faces by the last statement of this kind before them; 0 where there is none.
 std::vector<std::uint64_t> by_statements(const MeshFile& file, std::string_view keyword) {
   std::vector<std::uint64_t> labels(file.polygons.size(), 0);
@@ -75,8 +93,9 @@ std::uint64_t read_vertex_number(TextCursor& cursor) {
 
 }  // namespace
 
-std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& name,
+std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& given,
                                        const std::string& flag, const std::string& to) {
+  const std::string name = name_in(file, given);
   for (const auto& [label, keyword] : kStatements) {
     if (label != name) continue;
     const auto found =
@@ -90,7 +109,8 @@ std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& 
   const Column* column = find_column(file.face_columns, name);
   if (column == nullptr || column->is_list()) {
     throw Failure(file.path + ": faces have no property '" + name + "' to " + to + ": " + flag +
-                  " takes materials, groups, objects, or a property of the faces of a PLY file");
+                  " takes materials, groups, objects, or a property of the faces of a PLY file, "
+                  "and of glTF material");
   }
   std::vector<std::uint64_t> labels;
   for (std::uint64_t i = 0; i < file.polygons.size(); ++i) {
@@ -99,7 +119,8 @@ std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& 
   return labels;
 }
 
-std::string label_text(const MeshFile& file, const std::string& name, std::uint64_t label) {
+std::string label_text(const MeshFile& file, const std::string& given, std::uint64_t label) {
+  const std::string name = name_in(file, given);
   for (const auto& [list, keyword] : kStatements) {
     if (list != name) continue;
     std::set<std::string> known;

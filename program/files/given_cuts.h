@@ -10,14 +10,14 @@
 namespace beltrami::cli {
 
 /// One number per face: "materials", "groups" or "objects" of an OBJ file, or the face property of
-/// this name of a PLY file. Throws Failure where the file has no such thing, which says what the
-/// `flag` is `to` do.
-std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& name,
+/// this name of a PLY or glTF file; in the singular or the plural, as it is there. Throws Failure
+/// where the file has no such thing, which says what the `flag` is `to` do.
+std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& given,
                                        const std::string& flag, const std::string& to);
 
 /// What a label of face_labels is called in the file: "usemtl wood", or a number. Precondition: it
 /// has it.
-std::string label_text(const MeshFile& file, const std::string& name, std::uint64_t label);
+std::string label_text(const MeshFile& file, const std::string& given, std::uint64_t label);
 
 /// Pairs of vertex numbers, counted from 0, from a text file: anything but digits parts them.
 /// Throws Failure for an odd count of numbers and for those that are no vertex of the file.

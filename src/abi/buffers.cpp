@@ -38,12 +38,35 @@ std::size_t checked_stride(std::uint64_t stride, std::int32_t type, int componen
   return static_cast<std::size_t>(stride);
 }
 
+[[noreturn]] void refuse_type(std::int32_t type, const char* what, const char* instead) {
+  refuse("the type of the " + std::string(what) + " is " + std::to_string(type) + ": give " +
+         instead);
+}
+
+void require_real(std::int32_t type, const char* what) {
+  if (type != BELTRAMI_F32 && type != BELTRAMI_F64) {
+    refuse_type(type, what, "BELTRAMI_F32 or BELTRAMI_F64");
+  }
+}
+
+void require_integer(std::int32_t type, const char* what) {
+  if (type != BELTRAMI_U16 && type != BELTRAMI_U32 && type != BELTRAMI_U64) {
+    refuse_type(type, what, "BELTRAMI_U32, BELTRAMI_U64 or BELTRAMI_U16");
+  }
+}
+
+/// Throws Error INVALID_ARGUMENT for types that a buffer may not have.
+using RequireType = void (*)(std::int32_t type, const char* what);
+
 /// Items of `components` elements, checked once and then read without checks.
 class Reader {
  public:
-  Reader(const beltrami_buffer& buffer, std::uint64_t count, int components, const char* what)
+  Reader(const beltrami_buffer& buffer, RequireType require_type, std::uint64_t count,
+         int components, const char* what)
       : data_(static_cast<const unsigned char*>(buffer.data)) {
+    // First, since a buffer that was left out has no type either.
     if (data_ == nullptr) refuse("the data of the " + std::string(what) + " is NULL");
+    require_type(buffer.type, what);
     if (buffer.reserved != 0) {
       refuse("the field `reserved` of the " + std::string(what) + " is not 0");
     }
@@ -63,23 +86,6 @@ class Reader {
   const unsigned char* data_;
   std::size_t stride_;
 };
-
-[[noreturn]] void refuse_type(std::int32_t type, const char* what, const char* instead) {
-  refuse("the type of the " + std::string(what) + " is " + std::to_string(type) + ": give " +
-         instead);
-}
-
-void require_real(std::int32_t type, const char* what) {
-  if (type != BELTRAMI_F32 && type != BELTRAMI_F64) {
-    refuse_type(type, what, "BELTRAMI_F32 or BELTRAMI_F64");
-  }
-}
-
-void require_integer(std::int32_t type, const char* what) {
-  if (type != BELTRAMI_U16 && type != BELTRAMI_U32 && type != BELTRAMI_U64) {
-    refuse_type(type, what, "BELTRAMI_U32, BELTRAMI_U64 or BELTRAMI_U16");
-  }
-}
 
 /// Calls `use` with a value of the integers' type, which has passed require_integer.
 template <class Use>
@@ -184,8 +190,7 @@ beltrami_mesh read_mesh_header(const beltrami_mesh* theirs) {
 }
 
 std::vector<Triangle> read_faces(const beltrami_mesh& mesh, const Work& work) {
-  require_integer(mesh.indices.type, "indices");
-  const Reader reader(mesh.indices, mesh.face_count, 3, "indices");
+  const Reader reader(mesh.indices, require_integer, mesh.face_count, 3, "indices");
   return with_integer(mesh.indices.type, [&](auto integer) {
     return read_faces_as<decltype(integer)>(reader, mesh.face_count, mesh.vertex_count, work);
   });
@@ -193,8 +198,7 @@ std::vector<Triangle> read_faces(const beltrami_mesh& mesh, const Work& work) {
 
 std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<Index>& original,
                                  const Work& work) {
-  require_real(mesh.positions.type, "positions");
-  const Reader reader(mesh.positions, mesh.vertex_count, 3, "positions");
+  const Reader reader(mesh.positions, require_real, mesh.vertex_count, 3, "positions");
   return mesh.positions.type == BELTRAMI_F32 ? read_points<float, Vec3>(reader, original, work)
                                              : read_points<double, Vec3>(reader, original, work);
 }
@@ -202,8 +206,7 @@ std::vector<Vec3> read_positions(const beltrami_mesh& mesh, const std::vector<In
 std::vector<Vec2> read_uvs(const beltrami_buffer* uvs, std::uint64_t vertex_count,
                            const std::vector<Index>& original, const Work& work) {
   if (uvs == nullptr) refuse("uvs is NULL");
-  require_real(uvs->type, "UVs");
-  const Reader reader(*uvs, vertex_count, 2, "UVs");
+  const Reader reader(*uvs, require_real, vertex_count, 2, "UVs");
   std::vector<Vec2> points = uvs->type == BELTRAMI_F32
                                  ? read_points<float, Vec2>(reader, original, work)
                                  : read_points<double, Vec2>(reader, original, work);
@@ -226,8 +229,7 @@ std::uint64_t all_bits_of(std::int32_t type) {
 
 std::vector<std::uint64_t> read_integers(const beltrami_buffer& buffer, std::uint64_t count,
                                          int components, const char* what, const Work& work) {
-  require_integer(buffer.type, what);
-  const Reader reader(buffer, count, components, what);
+  const Reader reader(buffer, require_integer, count, components, what);
   return with_integer(buffer.type, [&](auto integer) {
     return read_elements<decltype(integer), std::uint64_t>(reader, count, components, work);
   });
@@ -235,8 +237,7 @@ std::vector<std::uint64_t> read_integers(const beltrami_buffer& buffer, std::uin
 
 std::vector<double> read_numbers(const beltrami_buffer& buffer, std::uint64_t count, int components,
                                  const char* what, const Work& work) {
-  require_real(buffer.type, what);
-  const Reader reader(buffer, count, components, what);
+  const Reader reader(buffer, require_real, count, components, what);
   return buffer.type == BELTRAMI_F32
              ? read_elements<float, double>(reader, count, components, work)
              : read_elements<double, double>(reader, count, components, work);

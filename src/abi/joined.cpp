@@ -160,6 +160,22 @@ Element through_all(Element element, const Before& before) {
   return element;
 }
 
+/// The same error with the surface named.
+Error named(const Error& error, std::uint64_t surface, Element element) {
+  return {error.fault(), "surface " + std::to_string(surface) + ": " + error.what(), element};
+}
+
+/// The header of surface `number` of `count`, which errors name where there are several.
+beltrami_surface read_header_of(const beltrami_surface* surface, std::uint64_t number,
+                                std::uint64_t count) {
+  if (count == 1) return read_surface_header(surface);
+  try {
+    return read_surface_header(surface);
+  } catch (const Error& error) {
+    throw named(error, number, error.element());
+  }
+}
+
 /// Throws Error INVALID_ARGUMENT where what goes with all surfaces comes with some.
 void require_agreement(const std::vector<beltrami_surface>& headers) {
   const auto has_pins = [](const beltrami_surface& header) { return header.pin_count > 0; };
@@ -182,7 +198,7 @@ std::vector<beltrami_surface> read_surface_headers(const beltrami_surface* const
   std::vector<beltrami_surface> headers;
   std::uint64_t vertices = 0, triangles = 0;
   for (std::uint64_t i = 0; i < count; ++i) {
-    headers.push_back(read_surface_header(surfaces[i]));
+    headers.push_back(read_header_of(surfaces[i], i, count));
     const beltrami_surface& header = headers.back();
     vertices += header.vertex_count;
     triangles += header.corner_count - std::min(header.corner_count, 2 * header.face_count);
@@ -210,8 +226,7 @@ AtlasProblem read_problem(const std::vector<beltrami_surface>& headers, const At
       append(all.input, std::move(one.input), before, count);
       all.bodies.push_back(before.vertices);
     } catch (const Error& error) {
-      throw Error(error.fault(), "surface " + std::to_string(i) + ": " + error.what(),
-                  through_all(error.element(), before));
+      throw named(error, i, through_all(error.element(), before));
     }
   }
   return all;

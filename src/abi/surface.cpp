@@ -256,7 +256,9 @@ AtlasInput atlas_input(const beltrami_surface& header, const LoadedSurface& surf
     result.reserve(triangles);
     for (Index t = 0; t < triangles; ++t) result.push_back(of_faces[surface.face_of(t)]);
   };
-  if (is_given(header.seams)) input.cuts.edges = read_seams(header, work);
+  if (is_given(header.seams) || header.seam_count > 0) {
+    input.cuts.edges = read_seams(header, work);
+  }
   if (is_given(header.face_labels)) {
     per_triangle(
         dense(read_integers(header.face_labels, header.face_count, 1, "face labels", work)),

@@ -7,6 +7,7 @@
 #include "atlas/snap.h"
 #include "base/parallel.h"
 #include "base/types.h"
+#include "mesh/disk_mesh.h"
 
 namespace beltrami {
 namespace {

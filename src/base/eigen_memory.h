@@ -7,7 +7,7 @@
 
 #include "base/host_memory.h"
 
-namespace Eigen::std {
+namespace Eigen::std {  // NOLINT(readability-identifier-naming)
 
 using namespace ::std;
 

@@ -229,5 +229,26 @@ TEST(AbiSeams, PaintThatIsNoneIsRefusedWithItsElement) {
   EXPECT_EQ(unwrap(context, surface), BELTRAMI_E_INVALID_ARGUMENT) << "there are no edges";
 }
 
+// A buffer that is left out is all zeros: what is wrong is that there is none, not its type.
+TEST(AbiSurface, WhatHasACountIsNotNull) {
+  const TriangleList cube = meshes::cube();
+  const struct {
+    std::uint64_t beltrami_surface::*count;
+    const char* what;
+  } counted[] = {{&beltrami_surface::seam_count, "seams"},
+                 {&beltrami_surface::pin_count, "pins"},
+                 {&beltrami_surface::painted_edge_count, "painted edges"},
+                 {&beltrami_surface::straight_edge_count, "straight edges"},
+                 {&beltrami_surface::rectangle_count, "rectangles"}};
+  for (const auto& [count, what] : counted) {
+    const Context context = create();
+    beltrami_surface surface = surface_view(cube);
+    surface.*count = 1;
+    EXPECT_EQ(unwrap(context, surface), BELTRAMI_E_INVALID_ARGUMENT) << what;
+    EXPECT_NE(message(context).find(std::string(what) + " is NULL"), std::string::npos)
+        << message(context);
+  }
+}
+
 }  // namespace
 }  // namespace beltrami::host

@@ -213,6 +213,22 @@ TEST(SeveralSurfaces, ErrorsNameTheSurfaceAndCountThroughAll) {
   EXPECT_EQ(beltrami_unwrap_surfaces(context.get(), &none, 0, nullptr, nullptr), BELTRAMI_E_EMPTY);
 }
 
+TEST(SeveralSurfaces, OneWithoutFacesIsNamed) {
+  const TriangleList cube = meshes::cube();
+  beltrami_surface empty = surface_of(cube);
+  empty.face_count = 0;
+  const Context context = create();
+  EXPECT_EQ(unwrap(context, {surface_of(cube), empty}), BELTRAMI_E_EMPTY);
+  EXPECT_NE(message(context).find("surface 1: "), std::string::npos) << message(context);
+  const std::array<beltrami_surface, 2> surfaces = {surface_of(cube), surface_of(cube)};
+  const std::array<const beltrami_surface*, 3> pointers = {&surfaces[0], &surfaces[1], nullptr};
+  EXPECT_EQ(beltrami_unwrap_surfaces(context.get(), pointers.data(), 3, nullptr, nullptr),
+            BELTRAMI_E_INVALID_ARGUMENT);
+  EXPECT_NE(message(context).find("surface 2: "), std::string::npos) << message(context);
+  EXPECT_EQ(unwrap(context, {empty}), BELTRAMI_E_EMPTY);
+  EXPECT_EQ(message(context).find("surface 0"), std::string::npos) << message(context);
+}
+
 TEST(SixteenBits, IndicesGiveTheSameBitsAsThoseOfThirtyTwo) {
   const TriangleList torus = meshes::torus(10);
   std::vector<std::uint16_t> narrow;

@@ -98,10 +98,11 @@ void expect_refused(const Result<void>& result, const std::string& words) {
 
 TEST(CppOptions, WhatIsNoneIsRefusedAndTheOldValueStays) {
   Context context;
-  expect_refused(context.try_set("marge", 3), "no option of this name");
-  expect_refused(context.try_set("cut", "everywhere"), "cut has no value");
+  expect_refused(context.try_set("marge", 3), "no option 'marge'");
+  expect_refused(context.try_set("cut", "everywhere"), "cut has no value 'everywhere'");
   expect_refused(context.try_set("threads", 1.5), "threads takes an integer");
   expect_refused(context.try_set("margin", "wide"), "margin has no value");
+  expect_refused(context.try_set(nullptr, 3), "no option");
   expect_refused(context.try_set(-1, 3), "");
   expect_refused(context.try_set(option::kThreads, -1), "threads");
   expect_refused(context.try_set("threads", std::numeric_limits<std::uint64_t>::max()), "threads");

@@ -30,7 +30,7 @@ void* allocate(void*, std::uint64_t bytes, std::uint64_t alignment) {
 void release(void*, void* block, std::uint64_t, std::uint64_t) {
   std::free(block);
 }
-const beltrami_allocator memory = {sizeof memory, 0, nullptr, allocate, release};
+const beltrami_allocator kMemory = {sizeof kMemory, 0, nullptr, allocate, release};
 
 }  // namespace
 
@@ -68,9 +68,9 @@ long until_there_is_room(Call call) {
 TEST(CppMemory, WhereItRunsOutThereIsAFailureAndNothingIsThrown) {
   const Triangles quad = bent_quad();
   const Surface surface(quad.positions, quad.faces);
-  EXPECT_GT(until_there_is_room([] { return Context::create(&memory); }), 0);
+  EXPECT_GT(until_there_is_room([] { return Context::create(&kMemory); }), 0);
 
-  Context context = Context::create(&memory).value();
+  Context context = Context::create(&kMemory).value();
   context.set(option::kMethod, Method::kTutte).set(option::kCut, Cut::kMinimal);
   EXPECT_GT(until_there_is_room([&] { return context.try_flatten(surface); }), 0);
   EXPECT_GT(until_there_is_room([&] { return context.try_unwrap(surface); }), 0);

@@ -33,6 +33,7 @@ TEST(CppAtlas, HasTheUvsThatCHas) {
   atlas.write_corner_uvs(span_of(written));
   EXPECT_EQ(written, of_c);
   EXPECT_EQ(atlas.status(), Status::kOk);
+  EXPECT_TRUE(atlas.injective());
   EXPECT_TRUE(atlas.certificate().injective);
   EXPECT_TRUE(atlas.certificate<float>().injective);
 }
@@ -95,6 +96,7 @@ TEST(CppAtlas, HasItsPagesUntilSomethingElseIsPacked) {
   EXPECT_EQ(pages.info().charts, atlas.info().charts);
   EXPECT_EQ(pages.page_utilisations().size(), 1u);
   EXPECT_EQ(pages.chart_pages(), std::vector<std::uint32_t>(pages.info().charts, 0));
+  EXPECT_TRUE(pages.injective());
   EXPECT_TRUE(pages.certificate().injective);
   const std::size_t side = static_cast<std::size_t>(pages.info().resolution);
   const std::vector<std::uint8_t> mask = pages.page_mask(0);
@@ -184,6 +186,7 @@ TEST(CppFlattening, HasAllThatCHas) {
   EXPECT_EQ(flat.info().faces, mesh.faces.size());
   EXPECT_EQ(flat.uvs().size(), mesh.positions.size());
   EXPECT_EQ(flat.triangles(), mesh.faces);
+  EXPECT_TRUE(flat.injective());
   EXPECT_TRUE(flat.certificate().injective);
   EXPECT_TRUE(flat.certificate<float>().injective);
   const std::vector<double> energies = flat.face_energies();
@@ -237,6 +240,14 @@ TEST(CppPacking, PositionsGiveEqualDensity) {
   const std::vector<std::uint32_t> pages(1);
   EXPECT_EQ(context.try_pack(UvMesh(uvs, quad.faces).kept_pages(pages)).status(),
             Status::kInvalidArgument);
+}
+
+TEST(CppPacking, OfWhatIsFoldedIsNotInjective) {
+  const Triangles quad = bent_quad();
+  const std::vector<Uv> folded{{0, 0}, {1, 0}, {1, 1}, {2, 0.5}};
+  const Packing packing = Context().pack(UvMesh(folded, quad.faces));
+  EXPECT_EQ(packing.status(), Status::kNotInjective);
+  EXPECT_FALSE(packing.injective());
 }
 
 TEST(CppChecks, JudgeUvsFromAnywhere) {

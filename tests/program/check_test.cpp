@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "gltf_builder.h"
 #include "run_program.h"
 #include "temporary_directory.h"
 #include "tiny_meshes.h"
@@ -44,25 +45,8 @@ TEST(Check, FindsFlippedFaces) {
 }
 
 TEST(Check, FindsOverlapsOfTheBoundaryWithoutAnyFlip) {
-  // A fan around the origin that turns by more than a whole circle.
   const TemporaryDirectory directory;
-  std::string text;
-  std::string uvs = "vt 0 0\n";
-  text += "v 0 0 0\n";
-  for (int i = 0; i <= 8; ++i) {
-    char line[96];
-    const double angle = i * 0.9;  // 7.2 in all, more than 2 pi
-    std::snprintf(line, sizeof line, "v %g %g %g\n", std::cos(angle), std::sin(angle), 0.1 * i);
-    text += line;
-    std::snprintf(line, sizeof line, "vt %g %g\n", std::cos(angle), std::sin(angle));
-    uvs += line;
-  }
-  std::string faces;
-  for (int i = 2; i <= 9; ++i) {
-    faces += "f 1/1 " + std::to_string(i) + "/" + std::to_string(i) + " " + std::to_string(i + 1) +
-             "/" + std::to_string(i + 1) + "\n";
-  }
-  const Outcome outcome = run({"check", directory.file("in.obj", text + uvs + faces), "--report",
+  const Outcome outcome = run({"check", directory.file("in.obj", fan_beyond_a_circle()), "--report",
                                directory.path("r.json")});
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
   const Json json = Json::parse(directory.read("r.json"));
@@ -194,6 +178,31 @@ TEST(Check, SaysTheDensityOfEachMaterialAndChart) {
   EXPECT_EQ(layout["labels"][1]["name"], "usemtl brass");
   EXPECT_NEAR(layout["labels"][1]["texels_per_unit"], 32, 1e-9);
   EXPECT_EQ(run({"check", in, "--labels", "groups"}).exit_code, 2);
+  EXPECT_EQ(run({"check", in, "--labels", "material", "--resolution", "256"}).out.substr(0, 300),
+            outcome.out.substr(0, 300));
+}
+
+// One triangle, which the second set of UVs turns over.
+TEST(Check, JudgesTheSetOfUvsThatIsAsked) {
+  const TemporaryDirectory directory;
+  GltfBuilder builder;
+  builder.mesh({{"POSITION", builder.vectors3({0, 0, 0, 1, 0, 0, 0, 1, 0})},
+                {"TEXCOORD_0", builder.vectors2({0, 1, 1, 1, 0, 0})},
+                {"TEXCOORD_1", builder.vectors2({0, 1, 0, 0, 1, 1})}})["material"] = 0;
+  builder.json["materials"] = GltfBuilder::Json::array({GltfBuilder::Json::object()});
+  const std::string in = directory.file("in.glb", builder.glb()), report = directory.path("r.json");
+  EXPECT_EQ(run({"check", in}).exit_code, 0);
+  const Outcome second = run({"check", in, "--uv-set", "1", "--report", report});
+  EXPECT_EQ(second.exit_code, 3);
+  EXPECT_NE(second.out.find("NO: 1 flipped"), std::string::npos) << second.out;
+  EXPECT_EQ(Json::parse(directory.read("r.json"))["options"]["uv-set"], "1");
+  const Outcome third = run({"check", in, "--uv-set", "2"});
+  EXPECT_EQ(third.exit_code, 2);
+  EXPECT_NE(third.err.find("has no texture coordinates, TEXCOORD_2"), std::string::npos)
+      << third.err;
+  const Outcome obj = run({"check", directory.file("in.obj", kSquareWithUvs), "--uv-set", "1"});
+  EXPECT_NE(obj.err.find("has one set of UVs"), std::string::npos) << obj.err;
+  EXPECT_EQ(run({"check", in, "--labels", "materials"}).exit_code, 0);
 }
 
 TEST(Check, FailsWhereUvsAreNotAsAsked) {

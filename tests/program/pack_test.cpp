@@ -16,6 +16,7 @@
 #include "process/failure.h"
 #include "run_program.h"
 #include "temporary_directory.h"
+#include "tiny_meshes.h"
 
 namespace beltrami::cli {
 namespace {
@@ -154,6 +155,15 @@ TEST(Pack, TakesMirroredChartsForTheirMirrorImagesWhereAsked) {
   EXPECT_LT(area(uvs, 4), 0) << "it stays mirrored";
   EXPECT_EQ(run({"check", out}).exit_code, kExitNotInjective);
   EXPECT_EQ(run({"check", out, "--mirrored"}).exit_code, 0);
+}
+
+// Its chart overlaps itself in any numbers.
+TEST(Pack, DoesNotSayThatDoublesWouldHelpWhereAChartOverlapsItself) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", fan_beyond_a_circle());
+  const Outcome outcome = run({"pack", in, directory.path("out.obj"), "--float32"});
+  EXPECT_EQ(outcome.exit_code, kExitNotInjective) << outcome.err;
+  EXPECT_EQ(outcome.out.find("injective in double precision"), std::string::npos) << outcome.out;
 }
 
 TEST(Pack, MirroredChartsThatFoldAreAFaultStill) {

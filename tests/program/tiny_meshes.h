@@ -23,6 +23,24 @@ inline const std::string kSquareWithFlip =
 inline const std::string kTetrahedron =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
+/// A fan around the origin that turns by more than a whole circle: its UVs overlap without a flip.
+inline std::string fan_beyond_a_circle() {
+  std::string text = "v 0 0 0\n", uvs = "vt 0 0\n", faces;
+  for (int i = 0; i <= 8; ++i) {
+    char line[96];
+    const double angle = i * 0.9;  // 7.2 in all, more than 2 pi
+    std::snprintf(line, sizeof line, "v %g %g %g\n", std::cos(angle), std::sin(angle), 0.1 * i);
+    text += line;
+    std::snprintf(line, sizeof line, "vt %g %g\n", std::cos(angle), std::sin(angle));
+    uvs += line;
+  }
+  for (int i = 2; i <= 9; ++i) {
+    faces += "f 1/1 " + std::to_string(i) + "/" + std::to_string(i) + " " + std::to_string(i + 1) +
+             "/" + std::to_string(i + 1) + "\n";
+  }
+  return text + uvs + faces;
+}
+
 /// A bumpy grid of n x n squares.
 inline std::string grid(int n) {
   std::string text;

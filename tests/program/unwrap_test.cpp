@@ -206,10 +206,37 @@ TEST(Unwrap, SaysWhetherTheTargetIsReached) {
   EXPECT_EQ(json["target"]["reached"], true);
   outcome = run({"unwrap", in, out, "--seam-budget", "0.01", "--report", report});
   ASSERT_EQ(outcome.exit_code, 0) << "no error: " << outcome.err;
-  EXPECT_NE(outcome.out.find("target     MISSED: 2.05 mean, seams up to 0.01 root areas\n"),
-            std::string::npos)
+  EXPECT_NE(
+      outcome.out.find(
+          "target     MISSED by the mean and the seams: 2.05 mean, seams up to 0.01 root areas\n"),
+      std::string::npos)
       << outcome.out;
   EXPECT_EQ(Json::parse(directory.read("r.json"))["target"]["reached"], false);
+}
+
+// Three edges of unit length at a right angle, too small for a density in texels.
+TEST(Unwrap, OfATinySurfaceSaysNoDensity) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", "v 0 0 0\nv 1e-320 0 0\nv 0 1e-320 0\nf 1 2 3\n");
+  const Outcome outcome = run({"unwrap", in, directory.path("out.obj")});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("pages      1"), std::string::npos) << outcome.out;
+  EXPECT_EQ(outcome.out.find("inf per unit"), std::string::npos) << outcome.out;
+}
+
+// Flat normals give glTF a vertex for each corner of the tetrahedron; the file has four.
+TEST(Unwrap, ToGltfCountsTheVerticesOfTheInput) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kTetrahedron + "v 9 9 9\n");
+  const std::string report = directory.path("r.json");
+  ASSERT_EQ(run({"unwrap", in, directory.path("out.glb"), "--report", report}).exit_code, 0);
+  const Json gltf = Json::parse(directory.read("r.json"));
+  ASSERT_EQ(run({"unwrap", in, directory.path("out.obj"), "--report", report}).exit_code, 0);
+  const Json obj = Json::parse(directory.read("r.json"));
+  EXPECT_EQ(gltf["input"]["vertices"], 5);
+  EXPECT_EQ(gltf["input"], obj["input"]);
+  EXPECT_EQ(gltf["admitted"]["welded_vertices"], 0);
+  EXPECT_EQ(gltf["admitted"]["unused_vertices"], 1);
 }
 
 TEST(Unwrap, APresetSetsWhatIsNotGiven) {

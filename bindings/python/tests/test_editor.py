@@ -44,6 +44,16 @@ def test_a_mesh_brings_its_faces() -> None:
         beltrami.Editor(vertices)
 
 
+@pytest.mark.parametrize(
+    "options", [{"target_energy": 2.1}, {"preset": "lightmap"}, {"cut": "given"}, {"pack": "none"}]
+)
+def test_an_option_that_a_session_does_not_look_at_is_refused(options: dict) -> None:
+    with pytest.raises(beltrami.InvalidArgumentError, match="has no effect in a session"):
+        beltrami.Editor(*grid(3), **options)
+    with beltrami.Editor(*grid(3), cut="auto", target_energy=None, flatten="dirichlet") as editor:
+        assert editor.update().status == "BELTRAMI_OK"
+
+
 def test_a_seam_is_opened_and_closed_again() -> None:
     vertices, faces = grid(12)
     with beltrami.Editor(vertices, faces) as editor:

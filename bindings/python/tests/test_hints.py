@@ -87,6 +87,14 @@ def test_faces_of_another_shape_or_type(faces, meant):
     assert beltrami.parameterize(VERTICES, corrected).injective
 
 
+def test_more_corners_than_vertices_are_no_polygon():
+    message = refusal(VERTICES, FACES.T, call=beltrami.unwrap, error=ValueError)
+    assert message.endswith("no polygon has 18 corners where there are 16 vertices: give faces.T")
+    assert refusal(VERTICES, FACES.T, call=beltrami.Editor, error=ValueError) == message
+    ring = np.arange(16).reshape(1, -1)
+    assert beltrami.unwrap(VERTICES, np.repeat(ring, 3, axis=0)).report.faces == 3
+
+
 def test_polygons_are_no_triangles():
     message = refusal(VERTICES, [[0, 1, 5], [1, 2, 6, 5]])
     assert message == "faces has rows of different lengths: cut polygons into triangles"
@@ -206,6 +214,17 @@ def test_a_path_is_no_mesh_but_the_message_has_two_ways_to_flatten_it(tmp_path, 
     result = beltrami.parameterize(eval(load, {"trimesh": trimesh}))
     assert result.uv.tobytes() == beltrami.parameterize(*tube()).uv.tobytes()
     assert eval(batch, {"beltrami": beltrami})[0].ok
+
+
+def test_what_has_faces_is_given_without_them():
+    trimesh = pytest.importorskip("trimesh")
+    mesh = trimesh.Trimesh(VERTICES, FACES, process=False)
+    words = "its own faces: leave faces out"
+    for path in ("x.obj", Path("x.obj")):
+        assert refusal(path, FACES, call=beltrami.unwrap) == f"the file of a path has {words}"
+    for thing in (mesh, trimesh.Scene([mesh])):
+        message = refusal(thing, FACES, call=beltrami.unwrap)
+        assert message == f"a {type(thing).__name__} brings {words}"
 
 
 def test_a_path_of_stl_has_its_vertices_merged(tmp_path, monkeypatch):

@@ -106,6 +106,24 @@ def test_pages_lie_side_by_side():
     assert right - left > 5 * (high - low)
 
 
+def test_a_scene_shows_its_meshes_on_their_pages():
+    trimesh = pytest.importorskip("trimesh")
+    scene = trimesh.Scene([trimesh.creation.box(), trimesh.creation.box([2, 1, 1])])
+
+    def width(**options):
+        left, right, _, _ = plot.atlas(beltrami.unwrap(scene, **options)).images[0].get_extent()
+        return right - left
+
+    assert width(share_page=True) < 1.1
+    assert 1.5 < width() < 2.1
+    apart = beltrami.unwrap(scene, pack="none")
+    with pytest.raises(ValueError, match="lie on each other"):
+        plot.atlas(apart)
+    one = beltrami.unwrap(trimesh.Scene([trimesh.creation.box()]), pack="none")
+    alone = plot.atlas(next(iter(one.atlases.values())), resolution=200)
+    assert (picture(plot.atlas(one, resolution=200)) == picture(alone)).all()
+
+
 def test_edges_are_drawn_where_faces_are_large():
     vertices, faces = grid(20)
     uv = vertices[:, :2]

@@ -56,6 +56,20 @@ def test_the_page_holds_the_atlas(tmp_path):
     np.testing.assert_allclose(frame @ frame.T, np.eye(3), atol=1e-12)
 
 
+def test_a_scene_with_one_mesh_has_its_page(tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    box = trimesh.creation.box()
+    scene = beltrami.unwrap(trimesh.Scene([box]))
+    scene.html(tmp_path / "box.html")
+    _, arrays = contents(tmp_path / "box.html")
+    (atlas,) = scene.atlases.values()
+    np.testing.assert_array_equal(arrays["faces"], atlas.uv_triangles)
+    two = beltrami.unwrap(trimesh.Scene([box, box.copy()]))
+    with pytest.raises(ValueError, match="the scene has 2"):
+        two.html(tmp_path / "two.html")
+    assert not (tmp_path / "two.html").exists()
+
+
 def test_pages_lie_side_by_side(tmp_path):
     atlas = beltrami.unwrap(CUBE, SIDES, hard_angle=60, resolution=64, texels_per_unit=40)
     atlas.html(tmp_path / "a.html")

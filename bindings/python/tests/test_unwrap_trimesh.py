@@ -170,7 +170,13 @@ def test_a_scene_comes_back_as_a_mesh_at_its_places(tmp_path):
     alone = beltrami.unwrap(one).mesh
     assert alone.bounds[0] == pytest.approx([4.5, -0.5, -0.5])
     assert (alone.face_attributes["part"] == np.arange(12)).all()
-    assert beltrami.unwrap(trimesh.Scene(trimesh.PointCloud(np.eye(3)))).mesh is None
+
+
+@pytest.mark.parametrize("things", [[], [trimesh.PointCloud(np.eye(3))]], ids=["empty", "points"])
+def test_a_scene_without_a_mesh_is_refused(things):
+    with pytest.raises(beltrami.MeshError, match="the scene has no mesh") as caught:
+        beltrami.unwrap(trimesh.Scene(things))
+    assert caught.value.status == "BELTRAMI_E_EMPTY"
 
 
 def test_meshes_of_a_scene_share_a_page():
@@ -209,6 +215,8 @@ def test_meshes_of_a_scene_share_a_page():
     faces = np.concatenate([meshes[0].faces, meshes[1].faces + len(meshes[0].vertices)])
     assert beltrami.check_atlas(vertices, faces, np.concatenate(corners)).injective
     assert beltrami.unwrap(box(), share_page=True).injective
+    with pytest.raises(TypeError, match="share_page is for the meshes of a scene"):
+        beltrami.unwrap(box().vertices, box().faces, share_page=True)
 
 
 def test_meshes_share_a_page_at_the_sizes_that_the_scene_shows():

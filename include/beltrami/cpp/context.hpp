@@ -76,7 +76,9 @@ class Context {
   /// An option by its name, that of the program's flag: "target-energy".
   Result<void> try_set(const char* name, const OptionValue& value) {
     const std::int32_t key = beltrami_option_find(name);
-    if (key < 0) return Failure(Status::kInvalidArgument, "there is no option of this name");
+    if (key < 0) {
+      return detail::refusal({"there is no option '", name == nullptr ? "" : name, "'"});
+    }
     return try_set(key, value);
   }
   Result<void> try_set(const std::string& name, const OptionValue& value) {

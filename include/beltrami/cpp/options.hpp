@@ -171,9 +171,11 @@ class OptionValue {
     if (beltrami_option_describe(key, &info) == BELTRAMI_OK) {  // else the library refuses the key
       if (choice_ != nullptr) {
         integer = number_of(choice_, key);
-        if (integer < 0) return refusal(info, " has no value of this name");
+        if (integer < 0) {
+          return detail::refusal({"the option ", info.name, " has no value '", choice_, "'"});
+        }
       } else if (real && info.type != BELTRAMI_TYPE_FLOAT) {
-        return refusal(info, " takes an integer");
+        return detail::refusal({"the option ", info.name, " takes an integer"});
       }
       real = info.type == BELTRAMI_TYPE_FLOAT;
     }
@@ -191,12 +193,6 @@ class OptionValue {
       if (std::strcmp(name, known) == 0) return value;
     }
     return -1;
-  }
-
-  static Failure refusal(const beltrami_option_info& info, const char* why) noexcept {
-    std::string sentence;
-    detail::has_room_for([&] { sentence = std::string("the option ") + info.name + why; });
-    return Failure(Status::kInvalidArgument, sentence.c_str());
   }
 
   std::int64_t integer_ = 0;

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <exception>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -120,6 +121,24 @@ class Failure {
   std::uint64_t element_;
   std::shared_ptr<const std::string> sentence_;
 };
+
+namespace detail {
+
+/// An INVALID_ARGUMENT whose sentence is in parts.
+inline Failure refusal(std::initializer_list<const char*> parts) noexcept {
+  std::string sentence;
+  has_room_for([&] {
+    for (const char* part : parts) sentence += part;
+  });
+  return Failure(Status::kInvalidArgument, sentence.c_str());
+}
+
+/// Whether a result with this status is proven to be injective in the precision asked for.
+inline bool is_injective(Status status) noexcept {
+  return status == Status::kOk || status == Status::kNotConverged;
+}
+
+}  // namespace detail
 
 #if BELTRAMI_CPP_EXCEPTIONS
 /// A Failure that is thrown.

@@ -38,6 +38,8 @@ class Flattening {
  public:
   /// kOk, or the reservation with which it comes.
   Status status() const noexcept { return static_cast<Status>(info_.status); }
+  /// Whether it is proven to be injective, in the precision that was asked for.
+  bool injective() const noexcept { return detail::is_injective(status()); }
   const FlatteningInfo& info() const noexcept { return info_; }
 
   /// One (u, v) per vertex; single precision is rounded to nearest, but where that would fold.
@@ -124,6 +126,8 @@ class Flattening {
 class Packing {
  public:
   Status status() const noexcept { return static_cast<Status>(info_.status); }
+  /// Whether it is proven to be injective, in the precision that was asked for.
+  bool injective() const noexcept { return detail::is_injective(status()); }
   const PackingInfo& info() const noexcept { return info_; }
 
   /// The new (u, v) of each UV vertex of mesh `mesh`, counted from 0. Of Context::pack alone.
@@ -230,6 +234,8 @@ class Atlas {
  public:
   /// kOk, or the reservation with which it comes.
   Status status() const noexcept { return static_cast<Status>(info_.status); }
+  /// Whether it is proven to be injective, in the precision that was asked for.
+  bool injective() const noexcept { return detail::is_injective(status()); }
   const AtlasInfo& info() const noexcept { return info_; }
 
   /// One (u, v) per corner, face after face.

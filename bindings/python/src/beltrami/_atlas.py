@@ -269,6 +269,29 @@ class SceneAtlases:
         """
         return _trimesh.joined(self.scene)
 
+    def html(self, path: str | os.PathLike[str]) -> None:
+        """Write the page of `Atlas.html` for a scene with one mesh.
+
+        Parameters
+        ----------
+        path : str or path
+            Of the file to write, which is replaced. The page is named after it.
+
+        Raises
+        ------
+        ValueError
+            Of several meshes: each atlas of `atlases` writes a page of its own.
+        OSError
+            Where the file cannot be written.
+        """
+        if len(self.atlases) != 1:
+            raise ValueError(
+                f"a page shows one mesh, and the scene has {len(self.atlases)}: "
+                "call html of each atlas of .atlases"
+            )
+        for atlas in self.atlases.values():
+            atlas.html(path)
+
     def _repr_html_(self) -> str:
         """Return the picture and the figures of each atlas, as notebooks show them."""
         return _html.of_scene(self)

@@ -90,7 +90,8 @@ def check_atlas(
     """
     if most_pairs < 0:
         raise ValueError(f"most_pairs is {most_pairs}: give 0 or more")
-    points, polygons = _arrays.positions(vertices), _polygons.polygons(faces)
+    points = _arrays.positions(vertices)
+    polygons = _polygons.polygons(faces, len(points))
     surface = Surface(points, polygons, _polygons.corner_uvs(corner_uvs, polygons))
     found, pairs = _surfaces.check(surface, allow_mirrored, most_pairs, cancel)
     fields = {f.name: getattr(found, f.name) for f in dataclasses.fields(found)}
@@ -146,7 +147,8 @@ def triangulate(vertices: npt.ArrayLike, faces: Faces) -> Triangulation:
     >>> len(found.triangles), found.face_of_triangle.tolist()
     (3, [0, 0, 1])
     """
-    points, polygons = _arrays.positions(vertices), _polygons.polygons(faces)
+    points = _arrays.positions(vertices)
+    polygons = _polygons.polygons(faces, len(points))
     corners, repeating = _surfaces.triangulate(Surface(points, polygons))
     numbers = np.arange(len(polygons))
     sizes = 3 if polygons.sizes is None else polygons.sizes

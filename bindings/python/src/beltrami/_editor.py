@@ -14,7 +14,6 @@ import numpy.typing as npt
 from . import _arrays, _polygons, _straight, _trimesh
 from ._arrays import Array
 from ._errors import NotInjectiveWarning
-from ._library import UNWRAP
 from ._polygons import Faces
 from ._progress import Progress, hook_for
 from ._sessions import SessionChart, SessionContext, SessionReport
@@ -85,7 +84,7 @@ class Editor:
         As for `parameterize`, of the beginning.
     **options
         Those of `unwrap` that concern flattening, welding, holes, packing, `effort` of packing,
-        `float32` and `threads`.
+        `float32` and `threads`. Others have no effect, and are refused but at their defaults.
 
     Raises
     ------
@@ -120,15 +119,16 @@ class Editor:
             if not _trimesh.is_mesh(vertices):
                 raise TypeError("faces are missing: only a mesh brings its own")
             vertices, faces = vertices.vertices, vertices.faces
-        polygons = _polygons.polygons(faces)
+        points = _arrays.positions(vertices)
+        polygons = _polygons.polygons(faces, len(points))
         uvs = None if corner_uvs is None else _polygons.corner_uvs(corner_uvs, polygons)
         cuts = None if seams is None else _integers("seams", seams, 2)
-        surface = Surface(_arrays.positions(vertices), polygons, uvs, seams=cuts)
+        surface = Surface(points, polygons, uvs, seams=cuts)
         self._faces = len(polygons)
         self._corners = polygons.corner_count
         self._dtype = np.dtype(np.float32 if options.get("float32") else np.float64)
         self._context = SessionContext()
-        self._context.set_options(options, UNWRAP)
+        self._context.set_session_options(options)
         with hook_for(progress) as hook:
             self._context.begin(surface, hook)
 

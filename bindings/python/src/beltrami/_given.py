@@ -2,13 +2,26 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from typing import Any
 
 import numpy.typing as npt
 
-from . import _arrays, _polygons, _straight
+from . import _arrays, _polygons, _straight, _trimesh
 from ._surfaces import Surface
+
+
+def require_arrays(vertices: Any, share_page: bool) -> None:
+    """Raise TypeError where what is given beside faces brings its own, or is of scenes."""
+    if _trimesh.is_mesh(vertices) or _trimesh.is_scene(vertices):
+        raise TypeError(f"a {type(vertices).__name__} brings its own faces: leave faces out")
+    if isinstance(vertices, (str, os.PathLike)):
+        raise TypeError("the file of a path has its own faces: leave faces out")
+    if share_page:
+        raise TypeError(
+            "share_page is for the meshes of a scene: leave it out where faces are given"
+        )
 
 
 def surface_of(
@@ -20,7 +33,8 @@ def surface_of(
     seams: Any,
 ) -> Surface:
     """Return a surface of what a caller gives."""
-    points, polygons = _arrays.positions(vertices), _polygons.polygons(faces)
+    points = _arrays.positions(vertices)
+    polygons = _polygons.polygons(faces, len(points))
     return Surface(
         points,
         polygons,

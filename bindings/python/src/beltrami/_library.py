@@ -98,6 +98,11 @@ def fail(status: int, message: str, element: int, kind: int) -> NoReturn:
     raise ERRORS.get(name, BeltramiError)(message, status, name, where, _KINDS.get(kind))
 
 
+def refuse(status: str, message: str) -> NoReturn:
+    """Raise what the library raises with a status, by its name."""
+    fail(getattr(lib, status), message, lib.BELTRAMI_NO_ELEMENT, lib.BELTRAMI_ELEMENT_NONE)
+
+
 def name_index(
     error: BeltramiError, face: Callable[[int], Array], indices: Array, count: int, what: str
 ) -> None:

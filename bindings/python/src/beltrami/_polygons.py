@@ -71,8 +71,8 @@ class Polygons:
         return np.split(of_corners, self.ends()[:-1])
 
 
-def polygons(faces: Any) -> Polygons:
-    """Return faces as the library reads them. Raises TypeError, ValueError."""
+def polygons(faces: Any, vertices: int) -> Polygons:
+    """Return faces of so many vertices as the library reads them. Raises TypeError, ValueError."""
     if isinstance(faces, (list, tuple)):
         listed = _listed(faces)
         if listed is not None:
@@ -86,6 +86,11 @@ def polygons(faces: Any) -> Polygons:
         return Polygons(_arrays.indices(faces), None, 3)
     if array.shape[1] == 4 and len(array) > _MANY_FACES and (array[:, 0] == 3).all():
         raise ValueError("faces begin with the counts of VTK: give faces[:, 1:]")
+    if len(array) == 3 and array.shape[1] > vertices:
+        raise ValueError(
+            f"faces has the shape {array.shape}, and no polygon has {array.shape[1]} corners "
+            f"where there are {vertices} vertices: give faces.T"
+        )
     array = array.astype(f"={array.dtype.kind}{max(array.dtype.itemsize, 4)}", copy=False)
     rows, columns = array.shape
     return Polygons(np.ascontiguousarray(array).ravel(), np.full(rows, columns), columns)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,10 +10,18 @@ import numpy as np
 
 from ._arrays import Array
 from ._errors import BeltramiError
-from ._library import Context, Hook, buffer, sized, status_name
+from ._library import UNWRAP, Context, Hook, buffer, options_of, refuse, sized, status_name
 from ._native import ffi, lib
 from ._surfaces import Surface
 from ._tables import AtlasCertificate
+
+#: Options of `beltrami.unwrap` that a session does not look at.
+_WITHOUT_EFFECT = (
+    *("unit_square", "cut", "hard_angle", "preset", "target_energy", "target_p99", "max_charts"),
+    *("seam_budget", "concave_seams", "hidden_seams", "hard_seams", "material_seams"),
+    *("symmetric_seams", "straight_seams", "flat_seams", "fill_weight"),
+    *("pack", "stack", "rectify", "snap_texels"),
+)
 
 
 @dataclass(frozen=True)
@@ -96,6 +105,16 @@ class SessionChart:
 
 class SessionContext(Context):
     """A context with a session."""
+
+    def set_session_options(self, options: Mapping[str, object]) -> None:
+        """Set options of a session by keyword. Raises TypeError, ValueError."""
+        known = options_of(UNWRAP)
+        defaults = {name: self._option(known[name]) for name in _WITHOUT_EFFECT}
+        found = self.set_options(options, UNWRAP)
+        for name, default in defaults.items():
+            if found.get(name, default) != default:
+                said = f"the option {known[name].name}={found[name]} has no effect in a session"
+                refuse("BELTRAMI_E_INVALID_ARGUMENT", f"{said}: leave it out")
 
     def begin(self, surface: Surface, hook: Hook) -> None:
         """Begin the session. Raises what the hook raises."""

@@ -14,8 +14,8 @@ from . import _hints, _sharing, _trimesh
 from ._atlas import Atlas, SceneAtlases
 from ._cancel import CancelToken
 from ._errors import BeltramiError, NotInjectiveWarning
-from ._given import surface_of, with_hints, with_straight
-from ._library import UNWRAP, Hook
+from ._given import require_arrays, surface_of, with_hints, with_straight
+from ._library import UNWRAP, Hook, refuse
 from ._polygons import Faces
 from ._progress import Progress, hook_for
 from ._surfaces import AtlasContext, Surface
@@ -202,7 +202,8 @@ def unwrap(
     share_page : bool, default False
         Of a scene: True packs all of its meshes onto the same pages, instead of a page for each.
         Equal areas of the scene get equally many texels: of a mesh at several places, where it is
-        largest. Not with ``pack="none"``, `fill_weight`, `stack` or `share_copies`.
+        largest. Not with ``pack="none"``, `fill_weight`, `stack` or `share_copies`. One mesh has
+        the pages to itself in any case.
     progress : bool or callable, optional
         As for `parameterize`.
     cancel : CancelToken, optional
@@ -379,7 +380,7 @@ def unwrap(
     ------
     MeshError
         `IndexOutOfRangeError`, `NonFiniteError`, or a surface without faces or area, with the face
-        or vertex in `element`.
+        or vertex in `element`; a scene without a mesh.
     TypeError, ValueError
         For arrays of other shapes or types, and for options out of range.
     Cancelled
@@ -454,7 +455,9 @@ def unwrap(
         "snap_texels": snap_texels,
         # end of options
     }
-    if faces is None and isinstance(vertices, (str, os.PathLike)):
+    if faces is not None:
+        require_arrays(vertices, share_page)
+    elif isinstance(vertices, (str, os.PathLike)):
         vertices = _trimesh.load(vertices)
     if faces is None and _trimesh.is_scene(vertices):
         of_cuts = (corner_uvs, face_labels, seams, vertex_paint, edge_paint, materials)
@@ -539,6 +542,8 @@ def _unwrap_scene(
     if share_page:
         pack_options, given = _sharing.options(given)
     meshes = {name: thing for name, thing in scene.geometry.items() if _trimesh.is_mesh(thing)}
+    if not meshes:
+        refuse("BELTRAMI_E_EMPTY", "the scene has no mesh: there is nothing to unwrap")
     total = max(1, sum(len(mesh.faces) for mesh in meshes.values()))
     before = 0.0
     atlases: dict[str, Atlas] = {}
@@ -554,7 +559,7 @@ def _unwrap_scene(
                 error.args = (f"{name}: {error}",)
                 raise
             before += share
-        if share_page and atlases:
+        if share_page:
             rest = _part_of(hook, before, 1 - before)
             atlases = _sharing.onto_common_pages(scene, atlases, meshes, pack_options, rest, cancel)
     for name, atlas in atlases.items():

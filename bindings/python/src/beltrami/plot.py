@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from . import _arrays, _layouts, _raster, _view
 from ._arrays import Array
-from ._atlas import Atlas
+from ._atlas import Atlas, SceneAtlases, tile_of
 from ._checks import Distortion, check_triangles
 from ._checks import distortion as _distortion
 from ._layouts import most, rounded_up
@@ -96,7 +96,7 @@ def layout(
 
 
 def atlas(
-    unwrapped: Atlas,
+    unwrapped: Atlas | SceneAtlases,
     ax: Axes | None = None,
     *,
     edges: bool | None = None,
@@ -108,8 +108,9 @@ def atlas(
 
     Parameters
     ----------
-    unwrapped : Atlas
-        What `beltrami.unwrap` returned.
+    unwrapped : Atlas or SceneAtlases
+        What `beltrami.unwrap` returned. Of a scene whose meshes share no page, the pages of each
+        follow those of the one before.
     ax : matplotlib.axes.Axes, optional
         Left out, a new figure is made.
     edges : bool, optional
@@ -126,6 +127,8 @@ def atlas(
     ------
     ImportError
         Without Matplotlib.
+    ValueError
+        For several meshes of a scene that lie on no pages.
 
     Examples
     --------
@@ -133,9 +136,32 @@ def atlas(
     >>> atlas = beltrami.unwrap(vertices, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
     >>> beltrami.plot.atlas(atlas).figure.savefig("atlas.png")
     """
-    points, triangles = unwrapped.udim_uvs.astype(float), unwrapped.uv_triangles
-    chart = unwrapped.chart_of_face[unwrapped.face_of_triangle]
+    if isinstance(unwrapped, SceneAtlases):
+        points, triangles, chart = _of_scene(list(unwrapped.atlases.values()))
+    else:
+        points, triangles = unwrapped.udim_uvs.astype(float), unwrapped.uv_triangles
+        chart = unwrapped.chart_of_face[unwrapped.face_of_triangle]
     return _draw_layout(points, triangles, _CHARTS[chart % len(_CHARTS)], ax, edges, resolution)
+
+
+def _of_scene(atlases: list[Atlas]) -> tuple[Array, Array, Array]:
+    """Return the UVs, triangles and their charts of all atlases, side by side."""
+    if len(atlases) > 1 and any(one.packing is None for one in atlases):
+        raise ValueError("without pages the meshes of a scene lie on each other: draw one by one")
+    parts: list[tuple[Array, Array, Array]] = []
+    pages = vertices = charts = 0
+    before = None
+    for one in atlases:
+        if before is not None and one.packing is not before:  # with share_page all have the same
+            pages += before.pages
+        before = one.packing
+        tiles = tile_of(one.page_of_uv + pages, float) if before is not None else 0.0
+        chart = one.chart_of_face[one.face_of_triangle] + charts
+        parts.append((one.uvs + tiles, one.uv_triangles + vertices, chart))
+        vertices += len(one.uvs)
+        charts += len(one.charts)
+    points, triangles, chart = map(np.concatenate, zip(*parts))
+    return points, triangles, chart
 
 
 def _draw_layout(
