@@ -10,15 +10,13 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "descend/assembly.h"
-#include "linear/elimination.h"
 #include "linear/mesh_matrix.h"
 #include "linear/spd_solver.h"
 #include "mesh/boundary.h"
 #include "mesh/face_chunks.h"
 
 namespace beltrami {
-std::vector<Vec2> tutte_embedding(const DiskMesh& mesh, const Work& work,
-                                  std::span<const Index> ranks) {
+std::vector<Vec2> tutte_embedding(const DiskMesh& mesh, const Work& work) {
   std::vector<Vec2> uvs(mesh.vertex_count(), Vec2::Zero());
   const std::vector<Vec2> circle = boundary_on_circle(mesh, work);
   for (std::size_t i = 0; i < circle.size(); ++i) uvs[mesh.boundary[i]] = circle[i];
@@ -41,8 +39,7 @@ std::vector<Vec2> tutte_embedding(const DiskMesh& mesh, const Work& work,
     }
   }
   const auto solver = make_spd_solver({}, work);
-  solver->analyze(laplacian.matrix(), laplacian.places(mesh.positions),
-                  in_order(ranks, laplacian.rows()));
+  solver->analyze(laplacian.matrix(), laplacian.places(mesh.positions));
   if (!solver->factorize(laplacian.matrix())) {
     throw Error(Fault::kSolver, "the linear system of the Tutte embedding is not definite");
   }

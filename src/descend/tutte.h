@@ -1,7 +1,6 @@
 // Tutte's embedding (Tutte 1963; Floater 1997): the injective start of the full-space optimisation.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "base/types.h"
@@ -16,9 +15,8 @@ namespace beltrami {
 /// The boundary loop on a circle around the origin by arc length, its disk of the area of the mesh,
 /// every interior vertex at the mean of its neighbours: injective in exact arithmetic. Uniform
 /// weights, since cotangents can be negative and then flip. Returns one UV per vertex.
-/// `ranks`: as NewtonOptions has them. Throws Error SOLVER if the system cannot be solved.
-std::vector<Vec2> tutte_embedding(const DiskMesh& mesh, const Work& work,
-                                  std::span<const Index> ranks = {});
+/// Throws Error SOLVER if the system cannot be solved.
+std::vector<Vec2> tutte_embedding(const DiskMesh& mesh, const Work& work);
 
 /// The global scale at which the mean energy of a map is least; 1 if a face is flipped or
 /// degenerate.

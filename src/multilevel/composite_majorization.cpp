@@ -13,8 +13,6 @@
 #include "energy/energy.h"
 #include "exact/certificate.h"
 #include "exact/crossings.h"
-#include "linear/cholesky/native_solver.h"
-#include "linear/elimination.h"
 #include "linear/spd_solver.h"
 #include "mesh/disk_mesh.h"
 #include "mesh/rest_shape.h"
@@ -76,12 +74,7 @@ double cm_bytes(const MeshCounts& n, bool scaffold, int threads) {
 Descent minimise_from_scratch(const DiskMesh& mesh, double tolerance, const ChartOptions& options,
                               const Work& work) {
   const auto rest = rest_triangles(mesh.positions, mesh.faces, work);
-  // One order for the start and all steps; large meshes are dissected where they lie by then.
-  std::vector<Index> ranks;
-  if (mesh.vertex_count() < kLeastDissected) {
-    ranks = elimination_ranks(mesh.positions, mesh.faces, work);
-  }
-  std::vector<Vec2> uvs = start_map(mesh, rest, ranks, options, work);
+  std::vector<Vec2> uvs = start_map(mesh, rest, options, work);
   work.report(0.02);
   scale_best(mesh, rest, options, work, uvs);
   if (start_flat(mesh, rest, options, uvs, work)) {
@@ -94,7 +87,6 @@ Descent minimise_from_scratch(const DiskMesh& mesh, double tolerance, const Char
   NewtonOptions newton = newton_options(options);
   newton.tolerance = tolerance;
   newton.hopeless = kHopelessEnergy;
-  newton.ranks = ranks;
   const bool simple = keeps_boundary_simple(options);
   Descent first = descend(mesh, rest, std::move(uvs), newton, simple, options, work);
   if (!is_hopeless(first, options) || work.out_of_time()) return first;

@@ -117,7 +117,7 @@ std::optional<CoarserMinimum> minimise_coarser(const DiskMesh& mesh, Index targe
     newton.contact = &contact;
     minimum.uvs = descend_led(coarse, rest, std::move(uvs), newton, work).uvs;
   } else {
-    uvs = start_map(coarse, rest, {}, options, work);
+    uvs = start_map(coarse, rest, options, work);
     if (!non_positive_faces(coarse.faces, uvs, work).empty()) return std::nullopt;
     scale_best(coarse, rest, options, work, uvs);
     minimum.uvs = descend(coarse, rest, std::move(uvs), newton, simple, options, work).uvs;
@@ -262,9 +262,8 @@ std::vector<Vec2> start_from_coarser(const DiskMesh& mesh, const std::vector<Res
 }
 
 std::vector<Vec2> start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                            std::span<const Index> ranks, const ChartOptions& options,
-                            const Work& work) {
-  std::vector<Vec2> uvs = tutte_embedding(mesh, work, ranks);
+                            const ChartOptions& options, const Work& work) {
+  std::vector<Vec2> uvs = tutte_embedding(mesh, work);
   RepairOptions mend{.global_fix = affords(mesh, options, Extra::kGlobalFix, work)};
   if (options.is_trial) mend.most_rings = kNarrowRings;
   if (repair(mesh, rest, uvs, mend, work.part(0, 0)).flips_after == 0) return uvs;

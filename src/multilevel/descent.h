@@ -2,7 +2,6 @@
 // cross itself, and from a start that may come from the minimum of a coarser mesh.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "base/vectors.h"
@@ -45,10 +44,9 @@ Descent descend(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
 
 /// Tutte's embedding, mended. Where it is folded beyond repair in floating point, a start from a
 /// coarser mesh; where that fails too, a drawing that cannot fold but for the rounding of its
-/// numbers. One UV per vertex. `ranks`: as NewtonOptions has them. Throws Error SOLVER.
+/// numbers. One UV per vertex. Throws Error SOLVER.
 std::vector<Vec2> start_map(const DiskMesh& mesh, const std::vector<RestTriangle>& rest,
-                            std::span<const Index> ranks, const ChartOptions& options,
-                            const Work& work);
+                            const ChartOptions& options, const Work& work);
 
 /// A mesh of a tenth of the faces, or 1,000, or 100, is flattened and its metric prolonged. One UV
 /// per vertex, every face positive; empty if every size leaves faces flipped. Throws Error SOLVER.

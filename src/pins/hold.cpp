@@ -444,7 +444,7 @@ HeldMap hold_pins(const DiskMesh& mesh, const std::vector<Vec2>& uvs,
   const std::vector<RestTriangle> rest = rest_triangles(mesh.positions, mesh.faces, work);
   std::vector<Vec2> start = uvs;
   if (pins.size() > 2 && !non_positive_faces(mesh.faces, start, work).empty()) {
-    start = start_map(mesh, rest, {}, options, work);
+    start = start_map(mesh, rest, options, work);
   }
   WayToPins way(mesh, rest, options, false, work);
   if (auto met = meet(way, start, pins, true, work)) return *std::move(met);
