@@ -5,6 +5,8 @@
 
 void submit(void* system, beltrami_job job, void* data, int32_t index);
 void wait_for_all(void* system);
+void* my_aligned_malloc(void* heap, uint64_t bytes, uint64_t alignment);
+void my_free(void* heap, void* block);
 
 #ifdef __cplusplus
 #include <array>
@@ -22,6 +24,10 @@ template <class Item>
 struct TArray {
   const Item* GetData() const;
   int32 Num() const;
+};
+struct FMemory {
+  static void* Malloc(std::size_t bytes, std::uint32_t alignment);
+  static void Free(void* block);
 };
 template <class Body>
 void ParallelFor(int32 count, Body body) {

@@ -23,7 +23,7 @@ GIVEN = {
     "c": """\
 beltrami_context* context, beltrami_surface surface, beltrami_mesh mesh, const beltrami_uv_mesh* const* meshes,
 size_t mesh_count, const beltrami_surface* const* surfaces, size_t surface_count, float* uvs, beltrami_progress progress,
-void* user, void* my_job_system""",
+void* user, void* my_job_system, void* my_heap""",
     "cpp": """\
 const std::vector<std::array<float, 3>>& positions, const std::vector<std::uint32_t>& triangles,
 const std::vector<std::array<std::uint32_t, 2>>& edges, const TArray<FVector3f>& Vertices,

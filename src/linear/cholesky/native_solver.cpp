@@ -46,7 +46,9 @@ class NativeSolver final : public SpdSolver {
     double_.clear();
     compact_ = {};
     scaling_.clear();
-    const int block = block_size_of(lower);
+    // An order says how large the blocks are: a few rows may look like blocks by chance.
+    const int block = given.empty() ? block_size_of(lower)
+                                    : static_cast<int>(lower.cols() / std::ssize(given));
     const Graph graph = graph_of(lower, block, work_);
     poll_interrupt();
     std::vector<int> order(given.begin(), given.end());
