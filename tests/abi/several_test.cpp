@@ -215,12 +215,12 @@ TEST(SeveralSurfaces, ErrorsNameTheSurfaceAndCountThroughAll) {
 
 TEST(SeveralSurfaces, OneWithoutFacesIsNamed) {
   const TriangleList cube = meshes::cube();
-  beltrami_surface empty = surface_of(cube);
+  beltrami_surface empty = surface_view(cube);
   empty.face_count = 0;
   const Context context = create();
-  EXPECT_EQ(unwrap(context, {surface_of(cube), empty}), BELTRAMI_E_EMPTY);
+  EXPECT_EQ(unwrap(context, {surface_view(cube), empty}), BELTRAMI_E_EMPTY);
   EXPECT_NE(message(context).find("surface 1: "), std::string::npos) << message(context);
-  const std::array<beltrami_surface, 2> surfaces = {surface_of(cube), surface_of(cube)};
+  const std::array<beltrami_surface, 2> surfaces = {surface_view(cube), surface_view(cube)};
   const std::array<const beltrami_surface*, 3> pointers = {&surfaces[0], &surfaces[1], nullptr};
   EXPECT_EQ(beltrami_unwrap_surfaces(context.get(), pointers.data(), 3, nullptr, nullptr),
             BELTRAMI_E_INVALID_ARGUMENT);
