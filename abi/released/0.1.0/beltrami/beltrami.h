@@ -159,8 +159,8 @@ typedef struct beltrami_allocator {
 } beltrami_allocator;
 
 /* As beltrami_create, and all memory of the context, of its calls and of their threads comes from
- * `allocator`, but for exceptions on their way and for CHOLMOD. beltrami_destroy has given it all
- * back. Results have the same bits. Its `user` must live as long as the context; the struct is
+ * `allocator`, but for exceptions on their way, stacks of threads and CHOLMOD. beltrami_destroy
+ * has given it all back. Results have the same bits. Its `user` must live as long as the context; the struct is
  * copied. NULL: the C library's memory. Functions without a context take that as well. Errors: as
  * beltrami_create, INVALID_ARGUMENT (a NULL function), UNSUPPORTED (see beltrami_has). */
 BELTRAMI_API beltrami_status beltrami_create_with_(uint32_t abi,
