@@ -10,7 +10,6 @@ nothing is written. The exit code is 1 where something was found.
 from __future__ import annotations
 
 import argparse
-import os
 import re
 import shutil
 import subprocess

@@ -2,8 +2,8 @@
 
     soak_coverage.py BUILD OUT
 
-BUILD is the folder of the preset fuzz-coverage. OUT has what ./dev soak has kept so far; the files of
-fuzz/corpus are read as well. Writes OUT/coverage.md, and OUT/coverage.lcov with every line.
+BUILD is the folder of the preset fuzz-coverage. OUT has what ./dev soak has kept so far; the files
+of fuzz/corpus are read as well. Writes OUT/coverage.md, and OUT/coverage.lcov with every line.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-#: Folders of sources that read what others have written, and the share of their lines to be reached.
+#: Folders of sources that read what others have written, and the share of lines to be reached.
 GOALS = {"program/files": 95, "src/abi": 90}
 MOST_FILES = 20
 #: Inputs end a fuzzer that are slow in a build that counts; the next ones are run all the same.

@@ -47,8 +47,8 @@ class NativeSolver final : public SpdSolver {
     compact_ = {};
     scaling_.clear();
     // An order says how large the blocks are: a few rows may look like blocks by chance.
-    const int block = given.empty() ? block_size_of(lower)
-                                    : static_cast<int>(lower.cols() / std::ssize(given));
+    const int block =
+        given.empty() ? block_size_of(lower) : static_cast<int>(lower.cols() / std::ssize(given));
     const Graph graph = graph_of(lower, block, work_);
     poll_interrupt();
     std::vector<int> order(given.begin(), given.end());

@@ -160,9 +160,10 @@ typedef struct beltrami_allocator {
 
 /* As beltrami_create, and all memory of the context, of its calls and of their threads comes from
  * `allocator`, but for exceptions on their way, stacks of threads and CHOLMOD. beltrami_destroy
- * has given it all back. Results have the same bits. Its `user` must live as long as the context; the struct is
- * copied. NULL: the C library's memory. Functions without a context take that as well. Errors: as
- * beltrami_create, INVALID_ARGUMENT (a NULL function), UNSUPPORTED (see beltrami_has). */
+ * has given it all back. Results have the same bits. Its `user` must live as long as the context;
+ * the struct is copied. NULL: the C library's memory. Functions without a context take that as
+ * well. Errors: as beltrami_create, INVALID_ARGUMENT (a NULL function), UNSUPPORTED (see
+ * beltrami_has). */
 BELTRAMI_API beltrami_status beltrami_create_with_(uint32_t abi,
                                                    const beltrami_allocator* allocator,
                                                    beltrami_context** out);
@@ -998,10 +999,11 @@ typedef struct beltrami_uv_mesh {
  * context's mesh and other results; those of an earlier beltrami_pack stay if it fails. Charts that
  * are folded, flipped or lie on themselves are packed as they are. Triangles without area between
  * their UVs are no charts: they become points of another one. Returns OK, or with a result
- * NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32, of which beltrami_get_packing_certificate says where;
- * errors: INVALID_ARGUMENT, EMPTY, INDEX_OUT_OF_RANGE, NON_FINITE (or beyond 1e100; each with its
- * element, counted in the mesh that the sentence names), ZERO_AREA (there is no chart), NO_ROOM, CANCELLED,
- * OUT_OF_MEMORY, INVALID_STATE (during a run), INTERNAL. */
+ * NOT_INJECTIVE or NOT_INJECTIVE_FLOAT32, of which beltrami_get_packing_certificate says where.
+ * Coordinates beyond 1e100 are NON_FINITE, too. Errors: INVALID_ARGUMENT, EMPTY,
+ * INDEX_OUT_OF_RANGE, NON_FINITE (each with its element, counted in the mesh that the sentence
+ * names), ZERO_AREA (there is no chart), NO_ROOM, CANCELLED, OUT_OF_MEMORY, INVALID_STATE (during a
+ * run), INTERNAL. */
 BELTRAMI_API beltrami_status beltrami_pack(beltrami_context* context,
                                            const beltrami_uv_mesh* const* meshes,
                                            uint64_t mesh_count, beltrami_progress progress,
