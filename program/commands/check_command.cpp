@@ -209,7 +209,18 @@ class Check {
     report_.float32_injective = single == BELTRAMI_OK;
   }
 
-  /// False where the mesh is no disk.
+  /// Whether faces have no area in space: any UVs of theirs are right, and a verdict on an atlas
+  /// leaves them out.
+  bool excepts_faces() const {
+    const SurfaceView view(file_);
+    const beltrami_surface surface = view.surface();
+    beltrami_atlas_certificate found{};
+    found.struct_size = sizeof found;
+    return beltrami_check_atlas(&surface, arguments_.mirrored, &found, nullptr, 0) >= BELTRAMI_OK &&
+           found.excepted > 0;
+  }
+
+  /// False where the mesh is no disk, or is better judged as an atlas.
   bool judge_disk() {
     const TriangleView triangles = surface_->view();
     const beltrami_mesh mesh = view_of(triangles);
@@ -218,6 +229,7 @@ class Check {
     certificate.struct_size = sizeof certificate;
     const beltrami_status status = beltrami_check_injective(&mesh, &uvs, &certificate);
     if (says_no_disk(status)) return false;
+    if (status == BELTRAMI_NOT_INJECTIVE && excepts_faces()) return false;
     require_ok_mesh(status, arguments_.input, "", certificate.error_element_kind,
                     certificate.error_element, file_, *surface_);
     to_face_of(*surface_, certificate.first_bad_face);

@@ -130,6 +130,18 @@ std::string two_squares(const std::string& u) {
          "f 1/1 2/2 3/3 4/4\nf 5/5 6/6 7/7 8/8\n";
 }
 
+// Found by the fuzzer of the program: a quad with two corners at one place, whose corners have
+// a UV each, looks like a disk.
+TEST(Check, LeavesFacesWithoutAreaOutOfDisksToo) {
+  const TemporaryDirectory directory;
+  const std::string in =
+      directory.file("in.obj", "v 1 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  const std::string out = directory.path("out.obj");
+  ASSERT_EQ(run({"unwrap", in, out, "--cut", "minimal"}).exit_code, 0);
+  const Outcome outcome = run({"check", out});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out;
+}
+
 TEST(Check, SaysWhereChartsLieHowFarApartAndHowDense) {
   const TemporaryDirectory directory;
   for (const auto& [u, tile] : {std::pair<std::string, int>{"0", 1001}, {"3", 1004}}) {
