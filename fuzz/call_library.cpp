@@ -343,7 +343,24 @@ class Host {
     judged(context, beltrami_get_page_mask(context, page, texels.data(), 0));
   }
 
+  /// What needs no context and cannot fail.
+  void ask_the_library() {
+    static constexpr std::array<const char*, 6> kFeatures = {
+        "gpl", "lgpl", "allocator", "solver:native", "exact:own", "none"};
+    for (const char* feature : kFeatures) {
+      const std::int32_t has = beltrami_has(feature);
+      promise(has == 0 || has == 1, "a build has a feature or not");
+    }
+    promise(beltrami_has(nullptr) == 0, "no build has nothing");
+    promise(beltrami_option_find("none") < 0, "what is no option has no key");
+    const std::int32_t status = data_.ConsumeIntegralInRange(-50, 5);
+    promise(beltrami_status_advice(status) != nullptr, "every number has an advice");
+    promise(beltrami_version() > 0 && beltrami_build_info() != nullptr,
+            "the library has a version");
+  }
+
   void check() {
+    ask_the_library();
     const beltrami_surface surface = input_.surface(data_);
     auto certificate = sized<beltrami_atlas_certificate>(data_);
     std::array<std::uint64_t, 8> pairs{};

@@ -152,7 +152,8 @@ bool has(const std::vector<std::string>& words, std::string_view prefix) {
 void hold_down(std::vector<std::string>& words) {
   const std::string command = words.empty() ? "" : words[0];
   const bool packs = command == "unwrap" || command == "pack";
-  if ((packs || command == "transfer") && !has(words, "--res")) {
+  // With pins nothing is packed, and the option is refused.
+  if ((packs || command == "transfer") && !has(words, "--res") && !has(words, "--pi")) {
     words.insert(words.end(), {"--resolution", "32"});
   }
   if ((packs || command == "flatten") && !has(words, "--thr")) {
@@ -211,7 +212,9 @@ void judge_output(const std::vector<std::string>& words, const End& end) {
   for (const char* word : {"--st", "--sh", "--uv", "--pack", "--max-p", "--tex", "-"}) {
     if (word == std::string("-") ? has(words, "-h") : has(words, word)) return;
   }
-  const End check = run({"check", output, "--within-page", "--mirrored"});
+  std::vector<std::string> asked = {"check", output, "--mirrored"};
+  if (!has(words, "--pi")) asked.emplace_back("--within-page");  // pins lie anywhere
+  const End check = run(asked);
   if (check.code == 0) return;
   std::fprintf(stderr, "%s%s", check.out.c_str(), check.err.c_str());
   broken("what is written is injective to the program itself");

@@ -55,6 +55,11 @@ void require_integer(std::int32_t type, const char* what) {
   }
 }
 
+/// Nothing needs none.
+void require_memory(const void* out, std::uint64_t count) {
+  if (out == nullptr && count > 0) refuse("the memory to write to is NULL");
+}
+
 /// Throws Error INVALID_ARGUMENT for types that a buffer may not have.
 using RequireType = void (*)(std::int32_t type, const char* what);
 
@@ -246,7 +251,7 @@ std::vector<double> read_numbers(const beltrami_buffer& buffer, std::uint64_t co
 void write_faces(const std::vector<Triangle>& faces, const std::vector<Index>& original,
                  const std::vector<Index>& original_face, void* out, std::int32_t type,
                  std::uint64_t stride) {
-  if (out == nullptr) refuse("the memory to write to is NULL");
+  require_memory(out, faces.size());
   require_integer(type, "output");
   const std::size_t step = checked_stride(stride, type, 3, faces.size(), "output");
   for (const Index vertex : original) require_room_in(type, vertex);
@@ -261,7 +266,7 @@ void write_faces(const std::vector<Triangle>& faces, const std::vector<Index>& o
 
 void write_integers(const std::vector<Index>& values, int components, void* out, std::int32_t type,
                     std::uint64_t stride) {
-  if (out == nullptr) refuse("the memory to write to is NULL");
+  require_memory(out, values.size());
   require_integer(type, "output");
   const auto per_item = static_cast<std::size_t>(components);
   const std::size_t step =
@@ -278,7 +283,7 @@ Writer::Writer(void* out, std::int32_t type, std::uint64_t stride, std::uint64_t
     : out_(static_cast<unsigned char*>(out)),
       components_(components),
       single_(type == BELTRAMI_F32) {
-  if (out == nullptr) refuse("the memory to write to is NULL");
+  require_memory(out, count);
   require_real(type, "output");
   stride_ = checked_stride(stride, type, components, count, "output");
 }

@@ -250,5 +250,18 @@ TEST(AbiSurface, WhatHasACountIsNotNull) {
   }
 }
 
+TEST(AbiSeams, NoneNeedNoMemory) {
+  const TriangleList mesh = meshes::quad();
+  const beltrami_surface surface = surface_view(mesh);
+  const Context context = create();
+  ASSERT_EQ(beltrami_unwrap(context.get(), &surface, nullptr, nullptr), BELTRAMI_OK);
+  auto atlas = sized<beltrami_atlas>();
+  ASSERT_EQ(beltrami_get_atlas(context.get(), &atlas), BELTRAMI_OK);
+  EXPECT_EQ(atlas.seams, 0u);
+  EXPECT_EQ(beltrami_get_seams(context.get(), nullptr, BELTRAMI_U32, 0), BELTRAMI_OK);
+  EXPECT_EQ(beltrami_get_face_charts(context.get(), nullptr, BELTRAMI_U32, 0),
+            BELTRAMI_E_INVALID_ARGUMENT);
+}
+
 }  // namespace
 }  // namespace beltrami::host

@@ -145,6 +145,16 @@ TEST(Unwrap, SeamsThatAreWrittenMakeTheSameCharts) {
   EXPECT_TRUE(second["target"].is_null());
 }
 
+// The list of none was refused, with all the work done.
+TEST(Unwrap, WritesAnEmptyListWhereThereAreNoSeams) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string seams = directory.path("seams.txt");
+  const Outcome outcome = run({"unwrap", in, directory.path("out.obj"), "--write-seams", seams});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(directory.read("seams.txt"), "");
+}
+
 TEST(Unwrap, NamesChartsOnWhichNothingCanBePainted) {
   const TemporaryDirectory directory;
   const std::string in = directory.file(
