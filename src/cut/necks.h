@@ -31,8 +31,8 @@ struct NeckOptions {
 /// directions; then the cheapest path near each, if one pays. `uvs`: one per vertex. `cost`: per
 /// half-edge, the two of an edge alike, at least 0; infinite where no cut may be. Real faces come
 /// first; what fills holes beside them counts as free to cut, and `cost` is to say so. Time: linear
-/// but for the paths, each of which looks at what is near its chord. Precondition: all faces
-/// positive.
+/// but for the paths, each of which looks at what is near its chord. Precondition: an injective
+/// map, for its border tells what lies inside.
 std::vector<Neck> find_necks(const DiskMesh& disk, const std::vector<Vec2>& uvs,
                              const std::vector<double>& cost, Index real_faces,
                              const NeckOptions& options);
