@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <map>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -103,11 +105,15 @@ void judge(const std::vector<PackChart>& charts, const PackOptions& options,
            const Packing& packing) {
   constexpr double kRounding = 1e-3;  // texels
   promise(packing.placements.size() == charts.size(), "every chart has a place");
-  promise(packing.pages >= 1 && packing.pages <= options.max_pages, "no page is too many");
+  std::map<Index, std::uint64_t> group_of_page;
+  std::set<std::uint64_t> groups;
   std::vector<std::vector<std::array<Uv, 3>>> all;
   for (Index c = 0; c < size_of(charts); ++c) {
     const Index page = packing.placements[c].page;
     promise(page >= 0 && page < packing.pages, "every chart has a page");
+    const std::uint64_t group = charts[c].group;
+    groups.insert(group);
+    promise(group_of_page.emplace(page, group).first->second == group, "groups share no page");
     all.push_back(placed(charts[c], packing, c));
     for (const auto& triangle : all.back()) {
       for (const Uv& p : triangle) {
@@ -119,6 +125,8 @@ void judge(const std::vector<PackChart>& charts, const PackOptions& options,
       }
     }
   }
+  const auto most = static_cast<int>(groups.size()) * options.max_pages;
+  promise(packing.pages >= 1 && packing.pages <= most, "no page is too many");
   for (std::size_t c = 0; c < all.size(); ++c) {
     for (std::size_t d = c + 1; d < all.size(); ++d) {
       if (packing.placements[c].page != packing.placements[d].page) continue;
@@ -141,6 +149,9 @@ void run_one(std::string_view bytes) {
   std::vector<PackChart> charts;
   const int count = data.ConsumeIntegralInRange(1, 4);
   for (int i = 0; i < count; ++i) charts.push_back(chart(data));
+  if (data.ConsumeIntegralInRange(0, 3) == 3) {
+    for (std::size_t c = 0; c < charts.size(); ++c) charts[c].group = c % 2;
+  }
   try {
     const Packing packing = pack_charts(charts, how, Work());
     judge(charts, how, packing);

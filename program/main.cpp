@@ -148,6 +148,14 @@ CLI::App* add_pack(CLI::App& app, PackArguments& arguments, Options& options) {
       ->group("Pages")
       ->type_name("N");
   command
+      ->add_option(
+          "--labels", arguments.labels,
+          "Give each of the materials, groups or objects of an OBJ file pages of its own,\n"
+          "all at one density; or each value of a property of the faces of PLY, or of\n"
+          "glTF (material). --max-pages counts those of each")
+      ->group("Pages")
+      ->type_name("NAME");
+  command
       ->add_flag("--keep-scales", arguments.keep_scales,
                  "Charts keep their sizes to each other, whatever their areas in space")
       ->group("Pages");

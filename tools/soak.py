@@ -1,4 +1,4 @@
-"""Run the fuzzers in turns, and report what they have done and found.
+"""Run the fuzzers side by side, one for each processor, and report what they have done and found.
 
     soak.py BUILD OUT [--minutes N] [--data FOLDER] [--target NAME ...]
 
@@ -10,11 +10,13 @@ nothing is written. The exit code is 1 where something was found.
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import shutil
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -210,20 +212,22 @@ def main() -> int:
     for name in wanted:
         if name not in names:
             parser.error(f"there is no run '{name}': {', '.join(names)}")
-    seconds = max(1, int(60 * arguments.minutes / len(wanted)))
+    jobs = min(len(wanted), os.cpu_count() or 1)
+    seconds = max(1, int(60 * arguments.minutes * jobs / len(wanted)))
     out = arguments.out.resolve()
     out.mkdir(parents=True, exist_ok=True)
     data = arguments.data.resolve() if arguments.data else None
-    turns = []
-    for name in wanted:
+
+    def run(name: str) -> Turn:
         print(f"dev: soak: {name} for {seconds} s", flush=True)
         if name == "shapes":
-            turns.append(run_shapes(arguments.shapes, seconds, out, int(time.time())))
-        elif name == "faults":
-            turns.append(run_faults(arguments.program.resolve(), seconds, out, int(time.time())))
-        else:
-            program = arguments.build.resolve() / f"fuzz_{name}"
-            turns.append(run_fuzzer(program, seconds, out, data))
+            return run_shapes(arguments.shapes, seconds, out, int(time.time()))
+        if name == "faults":
+            return run_faults(arguments.program.resolve(), seconds, out, int(time.time()))
+        return run_fuzzer(arguments.build.resolve() / f"fuzz_{name}", seconds, out, data)
+
+    with ThreadPoolExecutor(jobs) as pool:  # each run is a process
+        turns = list(pool.map(run, wanted))
     text = report(turns)
     (out / "report.md").write_text(text)
     print(text, end="")

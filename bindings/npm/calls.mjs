@@ -296,6 +296,9 @@ export class Calls {
     if (mesh.indices !== undefined) {
       values.indices = checked(mesh.indices, 'indices', WHOLE, 3, corners.length);
     }
+    if (mesh.pageLabels !== undefined) {
+      values.page_labels = checked(mesh.pageLabels, 'pageLabels', WHOLE, 1, corners.length / 3);
+    }
     return { at: arena.struct('beltrami_uv_mesh', values), uvs: uvs.length / 2, faces: corners.length / 3 };
   }
 

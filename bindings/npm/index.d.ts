@@ -38,6 +38,9 @@ export interface UvMesh {
   positions?: Positions;
   /** With positions: three vertices for each face; left out where UV vertices are vertices. */
   indices?: Uint32Array;
+  /** A number for each face: charts of different labels get different pages, in their order. All meshes have
+   *  them, or none. */
+  pageLabels?: Uint32Array;
 }
 
 /** How a call tells how far it is, and is ended. */
@@ -366,6 +369,8 @@ export interface UnwrapOptions extends Running {
   rectify?: 'none' | 'grids';
   /** True turns each chart to the most of its border that is straight, then by quarters alone, and moves straight borders onto the edges of texels. Lightmaps and pixel art want that. Nothing moves by more than half a texel, and charts keep a texel more room. Default: false. */
   snapTexels?: boolean;
+  /** True puts charts of faces with different labels on different pages, in the order of the labels, as tiles of UDIM by material. All have one density, and max-pages counts the pages of each label. Default: false. */
+  labelPages?: boolean;
 }
 
 export interface PackOptions extends Running {

@@ -38,6 +38,9 @@ export interface UvMesh {
   positions?: Positions;
   /** With positions: three vertices for each face; left out where UV vertices are vertices. */
   indices?: Uint32Array;
+  /** A number for each face: charts of different labels get different pages, in their order. All meshes have
+   *  them, or none. */
+  pageLabels?: Uint32Array;
 }
 
 /** How a call tells how far it is, and is ended. */

@@ -50,6 +50,7 @@ struct PackArguments {
   std::vector<std::string> outputs;  ///< one for each input, or none
   std::string report, picture;       ///< paths, or "" for none
   std::string masks;                 ///< as for unwrap
+  std::string labels;                ///< what labels faces with pages of their own, or ""
   std::uint64_t kept = 0;            ///< the charts of so many inputs stay where they are
   bool keep_scales = false;          ///< charts keep their sizes to each other
   bool mirrored = false;             ///< charts that are mirrored as a whole are no fault

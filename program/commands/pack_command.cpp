@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <deque>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -19,6 +20,7 @@
 #include "commands/report.h"
 #include "commands/uv_mesh.h"
 #include "files/atomic_file.h"
+#include "files/given_cuts.h"
 #include "files/gltf_file.h"
 #include "files/mesh_file.h"
 #include "files/polygons.h"
@@ -39,12 +41,14 @@ struct PackedFile {
   std::vector<std::uint32_t> corners;     ///< of the file's faces, three for each triangle
   UvMesh plane;                           ///< of the triangles, on their pages where they are kept
   std::vector<std::uint32_t> kept_pages;  ///< per triangle; empty: none is kept
+  std::vector<std::uint64_t> labels;      ///< per triangle, where labels have their own pages
   std::vector<std::uint64_t> charts;      ///< per triangle
 };
 
 void note_options(const PackArguments& arguments, const Options& options, Report& report) {
   report.options = options.values();
   report.options.emplace_back("keep-scales", arguments.keep_scales);
+  report.options.emplace_back("labels", arguments.labels);
   report.options.emplace_back("kept", static_cast<std::int64_t>(arguments.kept));
   report.options.emplace_back("mirrored", arguments.mirrored);
   report.options.emplace_back("masks", arguments.masks);
@@ -76,6 +80,7 @@ class PackRun {
     }
     fetch_report();
     for (std::size_t i = 0; i < files_.size(); ++i) fetch_uvs(i);
+    report_.label_pages = labels_.taken();
     judge_mirrored();
     for (const PackedFile& mesh : files_) judge_held(mesh);
     return write_files();
@@ -94,6 +99,9 @@ class PackRun {
           "pack takes IN and OUT, or several INs and behind --output as many OUTs: there "
           "are " +
           std::to_string(inputs.size()) + " and " + std::to_string(outputs.size()));
+    }
+    if (arguments_.kept > 0 && !arguments_.labels.empty()) {
+      throw Failure("--labels and --kept do not go together: charts that stay have their pages");
     }
     if (arguments_.kept > inputs.size()) {
       throw Failure("--kept: there are " + std::to_string(inputs.size()) + " meshes");
@@ -160,6 +168,7 @@ class PackRun {
     mesh.corners = triangle_corners(file);
     mesh.plane = uv_mesh_of(file, mesh.corners);
     if (kept) keep(mesh);
+    if (!arguments_.labels.empty()) label(mesh);
     report_.vertices = report_.vertices.value_or(0) + file.vertex_count();
     report_.faces = report_.faces.value_or(0) + file.polygons.size();
     report_.short_faces = report_.short_faces.value_or(0) + file.short_faces;
@@ -198,6 +207,18 @@ class PackRun {
     mesh.plane.uvs = moved;
   }
 
+  void label(PackedFile& mesh) {
+    const std::vector<std::uint64_t> of_faces =
+        face_labels(mesh.file, arguments_.labels, "--labels", "give pages to");
+    std::map<std::uint64_t, std::uint64_t> numbers;
+    for (const auto& [label, text] : label_texts(mesh.file, arguments_.labels, of_faces)) {
+      numbers[label] = labels_.number(text);
+    }
+    for (std::size_t i = 0; i < mesh.corners.size(); i += 3) {
+      mesh.labels.push_back(numbers[of_faces[mesh.file.polygons.of_corner(mesh.corners[i])]]);
+    }
+  }
+
   void pack() {
     throw_if_interrupted();
     std::vector<beltrami_uv_mesh> meshes;
@@ -217,6 +238,7 @@ class PackRun {
       if (!mesh.kept_pages.empty()) {
         view.kept_pages = {mesh.kept_pages.data(), 0, BELTRAMI_U32, 0};
       }
+      if (!mesh.labels.empty()) view.page_labels = {mesh.labels.data(), 0, BELTRAMI_U64, 0};
       view.cancel = interrupt_number();
     }
     std::vector<const beltrami_uv_mesh*> pointers;
@@ -260,6 +282,9 @@ class PackRun {
       const double* uv = &mesh.plane.uvs[2 * std::size_t{mesh.plane.uv_indices[i]}];
       corner_uvs[2 * std::size_t{mesh.corners[i]}] = uv[0] + u;
       corner_uvs[2 * std::size_t{mesh.corners[i]} + 1] = uv[1] + v;
+    }
+    for (std::size_t t = 0; t < mesh.labels.size(); ++t) {
+      labels_.add(mesh.labels[t], pages[mesh.charts[t]]);
     }
     set_corner_uvs(mesh.file, corner_uvs, options_.integer(BELTRAMI_OPTION_FLOAT32) != 0);
   }
@@ -375,6 +400,7 @@ class PackRun {
   ProgressBar bar_;
   Context context_;
   std::vector<PackedFile> files_;
+  PagesOfLabels labels_;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "commands/pages.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "commands/command.h"
@@ -46,6 +47,32 @@ void report_pages(beltrami_context* context, Report& report) {
   report.page_utilisations.assign(report.packing->pages, 0);
   require(context, beltrami_get_page_utilisations(context, report.page_utilisations.data(),
                                                   BELTRAMI_F64, 0));
+}
+
+std::uint64_t PagesOfLabels::number(const std::string& name) {
+  const auto [place, is_new] = numbers_.emplace(name, numbers_.size());
+  if (is_new) {
+    pages_.push_back({name, 0, 0});
+    has_page_.push_back(false);
+  }
+  return place->second;
+}
+
+void PagesOfLabels::add(std::uint64_t label, std::uint64_t page) {
+  auto& [name, first, last] = pages_[label];
+  first = has_page_[label] ? std::min(first, page) : page;
+  last = std::max(last, page);
+  has_page_[label] = true;
+}
+
+std::vector<LabelPages> PagesOfLabels::taken() const {
+  std::vector<LabelPages> all;
+  for (std::size_t i = 0; i < pages_.size(); ++i) {
+    if (has_page_[i]) all.push_back(pages_[i]);
+  }
+  std::sort(all.begin(), all.end(),
+            [](const LabelPages& a, const LabelPages& b) { return a.first < b.first; });
+  return all;
 }
 
 void write_masks(beltrami_context* context, const std::string& base,

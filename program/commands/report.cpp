@@ -116,6 +116,11 @@ void append_packing(const Report& report, std::string& text) {
   // Of a surface that is small enough no double holds the density.
   if (std::isfinite(found.texels_per_unit)) append(text, ", %.4g per unit", found.texels_per_unit);
   text += "\n";
+  for (const auto& [name, first, last] : report.label_pages) {
+    append(text, "label      %llu", static_cast<unsigned long long>(kFirstTile + first));
+    if (last > first) append(text, " to %llu", static_cast<unsigned long long>(kFirstTile + last));
+    text += ": " + one_line(name) + "\n";
+  }
   const double asked = asked_margin(report);
   if (found.margin < asked) {
     append(text,

@@ -54,6 +54,12 @@ struct BakedCounts {
   std::uint64_t textures = 0, texels = 0, without_source = 0;
 };
 
+/// The pages, counted from 0, that the charts of a label are on.
+struct LabelPages {
+  std::string name;
+  std::uint64_t first = 0, last = 0;
+};
+
 /// Everything that a command has not come to know is empty, and null in JSON.
 struct Report {
   std::string command;
@@ -79,6 +85,7 @@ struct Report {
   std::optional<Target> target;
   std::optional<beltrami_packing> packing;
   std::vector<double> page_utilisations;
+  std::vector<LabelPages> label_pages;  ///< by their first pages; where labels have their own
   std::optional<BakedCounts> textures;
   std::optional<PageLayout> layout;  ///< check
   std::vector<std::string> unmet;    ///< check: what was asked for and is not so, in words

@@ -164,11 +164,16 @@ Json target_json(const Report& report) {
 Json packing_json(const Report& report) {
   if (!report.packing) return nullptr;
   const beltrami_packing& found = *report.packing;
+  Json labels = Json::array();
+  for (const auto& [name, first, last] : report.label_pages) {
+    labels.push_back({{"name", name}, {"first_page", first}, {"last_page", last}});
+  }
   return {{"pages", found.pages},
           {"resolution", found.resolution},
           {"texels_per_unit", number(found.texels_per_unit)},
           {"utilisation", number(found.utilisation)},
           {"page_utilisations", report.page_utilisations},
+          {"labels", std::move(labels)},
           {"margin", number(found.margin)},
           {"tiny_charts", report.atlas ? Json(report.tiny_charts) : Json(nullptr)},
           {"splits", found.splits},

@@ -1,6 +1,7 @@
 // beltrami unwrap: read any mesh, cut it, flatten its charts, write, report.
 #include <algorithm>
 #include <deque>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -175,6 +176,9 @@ class Unwrapping {
     if (!file_.truncated.empty()) {
       file_.not_kept.push_back("what is missing of the input (" + file_.truncated + ")");
     }
+    if (arguments_.labels.empty() && options_.integer(BELTRAMI_OPTION_LABEL_PAGES) != 0) {
+      throw Failure("--label-pages gives each label pages of its own: say by --labels which");
+    }
     if (!arguments_.labels.empty()) {
       labels_ = face_labels(file_, arguments_.labels, "--labels", "cut along");
     }
@@ -320,11 +324,24 @@ class Unwrapping {
         uvs[2 * c] += u;
         uvs[2 * c + 1] += v;
       }
+      if (options_.integer(BELTRAMI_OPTION_LABEL_PAGES) != 0) note_label_pages(pages);
     }
     set_corner_uvs(file_, uvs, options_.integer(BELTRAMI_OPTION_FLOAT32) != 0);
     triangles_.resize(3 * report_.atlas->triangles);
     require(beltrami_get_triangles(context_.get(), triangles_.data(), BELTRAMI_U32, 0));
     if (!arguments_.html.empty()) fetch_charts();
+  }
+
+  void note_label_pages(const std::vector<std::uint64_t>& pages_of_corners) {
+    PagesOfLabels pages;
+    std::map<std::uint64_t, std::uint64_t> numbers;
+    for (const auto& [label, text] : label_texts(file_, arguments_.labels, labels_)) {
+      numbers[label] = pages.number(text);
+    }
+    for (std::size_t c = 0; c < pages_of_corners.size(); ++c) {
+      pages.add(numbers[labels_[file_.polygons.of_corner(c)]], pages_of_corners[c]);
+    }
+    report_.label_pages = pages.taken();
   }
 
   void fetch_charts() {

@@ -136,6 +136,16 @@ std::string label_text(const MeshFile& file, const std::string& given, std::uint
   return name + " " + std::string(digits.data(), end);
 }
 
+std::map<std::uint64_t, std::string> label_texts(const MeshFile& file, const std::string& given,
+                                                 const std::vector<std::uint64_t>& labels) {
+  std::map<std::uint64_t, std::string> texts;
+  for (const std::uint64_t label : labels) {
+    const auto [place, is_new] = texts.try_emplace(label);
+    if (is_new) place->second = label_text(file, given, label);
+  }
+  return texts;
+}
+
 std::vector<std::uint32_t> read_seams(const std::string& path, const MeshFile& file) {
   const std::string text = read_file(path);
   std::vector<std::uint32_t> ends;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,10 @@ std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& 
 /// What a label of face_labels is called in the file: "usemtl wood", or a number. Precondition: it
 /// has it.
 std::string label_text(const MeshFile& file, const std::string& given, std::uint64_t label);
+
+/// Those of all labels, by their numbers.
+std::map<std::uint64_t, std::string> label_texts(const MeshFile& file, const std::string& given,
+                                                 const std::vector<std::uint64_t>& labels);
 
 /// Pairs of vertex numbers, counted from 0, from a text file: anything but digits parts them.
 /// Throws Failure for an odd count of numbers and for those that are no vertex of the file.

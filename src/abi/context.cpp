@@ -166,9 +166,12 @@ beltrami_status beltrami_context::unwrap(const beltrami_surface* const* surfaces
                                          void* user) {
   const std::vector<beltrami_surface> headers =
       beltrami::read_surface_headers(surfaces, surface_count);
-  const bool pinned = std::ranges::any_of(
-      headers, [](const beltrami_surface& header) { return header.pin_count > 0; });
-  beltrami::require_effect_on_atlas(options, pinned);
+  beltrami::AtlasGivens given;
+  for (const beltrami_surface& header : headers) {
+    given.pins = given.pins || header.pin_count > 0;
+    given.labels = given.labels || header.face_labels.data != nullptr;
+  }
+  beltrami::require_effect_on_atlas(options, given);
   beltrami::RunMark mark(*this);
   const beltrami::InterruptScope interruptible({&cancelled, headers.front().cancel, {}});
   beltrami::HostProgress host(progress, user);

@@ -88,10 +88,10 @@ constexpr std::int32_t kOfTheSearch[] = {
     BELTRAMI_OPTION_SYMMETRIC_SEAMS, BELTRAMI_OPTION_STRAIGHT_SEAMS, BELTRAMI_OPTION_FLAT_SEAMS,
     BELTRAMI_OPTION_FILL_WEIGHT};
 
-constexpr std::int32_t kOfPages[] = {BELTRAMI_OPTION_RESOLUTION,      BELTRAMI_OPTION_MARGIN,
-                                     BELTRAMI_OPTION_TEXELS_PER_UNIT, BELTRAMI_OPTION_MAX_PAGES,
-                                     BELTRAMI_OPTION_PACK_TURNS,      BELTRAMI_OPTION_PACK_BLOCK,
-                                     BELTRAMI_OPTION_FILL_WEIGHT,     BELTRAMI_OPTION_SNAP_TEXELS};
+constexpr std::int32_t kOfPages[] = {
+    BELTRAMI_OPTION_RESOLUTION,  BELTRAMI_OPTION_MARGIN,      BELTRAMI_OPTION_TEXELS_PER_UNIT,
+    BELTRAMI_OPTION_MAX_PAGES,   BELTRAMI_OPTION_PACK_TURNS,  BELTRAMI_OPTION_PACK_BLOCK,
+    BELTRAMI_OPTION_FILL_WEIGHT, BELTRAMI_OPTION_SNAP_TEXELS, BELTRAMI_OPTION_LABEL_PAGES};
 
 /// Pages that are as many as it takes: as many as the option max-pages allows.
 constexpr int kManyPages = 1000;
@@ -195,6 +195,7 @@ AtlasOptions atlas_options(const Options& options) {
   if (options.pack == BELTRAMI_PACK_PAGES) {
     atlas.pack = pack_options(options);
     atlas.pack->snap = options.snap_texels;
+    atlas.label_pages = options.label_pages;
   }
   // Seams that are given or symmetric are to stay so.
   const bool is_free = options.cut == BELTRAMI_CUT_AUTO && options.weights.symmetry == 0;
@@ -234,7 +235,8 @@ void require_effect(const Options& options) {
   }
 }
 
-void require_effect_on_atlas(const Options& options, bool pins) {
+void require_effect_on_atlas(const Options& options, const AtlasGivens& given) {
+  const bool pins = given.pins;
   require_effect(options);
   refuse_if_set(options, BELTRAMI_OPTION_DELAUNAY, "an atlas", "or flatten disks");
   if (options.weld == BELTRAMI_WELD_OFF) {
@@ -256,6 +258,12 @@ void require_effect_on_atlas(const Options& options, bool pins) {
   }
   if (options.weights.symmetry > 0) {
     refuse_if_set(options, BELTRAMI_OPTION_FILL_WEIGHT, "symmetric seams", "or do without them");
+  }
+  if (!given.labels) {
+    refuse_if_set(options, BELTRAMI_OPTION_LABEL_PAGES, "no face labels", "or give them");
+  }
+  if (options.label_pages) {
+    refuse_if_set(options, BELTRAMI_OPTION_STACK, "pages by labels", "or do without them");
   }
   if (options.pack == BELTRAMI_PACK_PAGES && !pins) {
     if (options.texels_per_unit > 0) {

@@ -29,9 +29,14 @@ Limits limits(const Options& options);
 /// nothing to bound.
 void require_effect(const Options& options);
 
+/// What comes with surfaces.
+struct AtlasGivens {
+  bool pins = false, labels = false;
+};
+
 /// The same for what an atlas takes no notice of: delaunay, weld-distance where nothing is welded,
-/// what a search for seams is told where none is made, and what is said of pages where nothing is
-/// packed, as with `pins`.
-void require_effect_on_atlas(const Options& options, bool pins);
+/// what a search for seams is told where none is made, label-pages without labels, and what is said
+/// of pages where nothing is packed, as with pins.
+void require_effect_on_atlas(const Options& options, const AtlasGivens& given);
 
 }  // namespace beltrami

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -115,7 +116,7 @@ void append(AtlasInput& all, AtlasInput&& one, const Before& before, const Befor
   for (auto [a, b] : one.cuts.edges) {
     all.cuts.edges.push_back({a + before.vertices, b + before.vertices});
   }
-  append(all.cuts.labels, before.triangles, one.cuts.labels, count.triangles, Index{0});
+  append(all.cuts.labels, before.triangles, one.cuts.labels, count.triangles, std::uint64_t{0});
   append(all.cuts.corner_uvs, one.cuts.corner_uvs);  // all have them, or none
   append(all.densities, before.triangles, one.densities, count.triangles, 1.0);
   append(all.hints.vertex_paint, before.vertices, one.hints.vertex_paint, count.vertices, 1.0);

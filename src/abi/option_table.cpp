@@ -570,6 +570,7 @@ const OptionEntry kOptions[] = {
     kStack,
     kRectify,
     kSnapTexels,
+    kLabelPages,
 };
 
 }  // namespace

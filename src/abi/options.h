@@ -47,6 +47,7 @@ struct Options {
   int pack_block = 1;
   double fill_weight = 10;
   bool snap_texels = false;
+  bool label_pages = false;
   std::int32_t effort = BELTRAMI_EFFORT_NORMAL;
 };
 

@@ -63,4 +63,19 @@ inline constexpr OptionEntry kSnapTexels = {
     .calls = BELTRAMI_CALL_UNWRAP,
 };
 
+inline constexpr OptionEntry kLabelPages = {
+    .key = BELTRAMI_OPTION_LABEL_PAGES,
+    .type = BELTRAMI_TYPE_INT,
+    .name = "label-pages",
+    .summary =
+        "1 puts charts of faces with different labels on different pages, in the order of the "
+        "labels, as tiles of UDIM by material. All have one density, and max-pages counts the "
+        "pages of each label.",
+    .minimum = 0,
+    .maximum = 1,
+    .get = get<&Options::label_pages>,
+    .set = set<&Options::label_pages>,
+    .calls = BELTRAMI_CALL_UNWRAP,
+};
+
 }  // namespace beltrami

@@ -72,6 +72,10 @@ class Reader {
     }
     if (is_given(header.positions)) add_areas(m, faces, all);
     add_kept(m, all);
+    if (!is_given(header.page_labels)) return;
+    const std::vector<std::uint64_t> labels =
+        read_integers(header.page_labels, header.face_count, 1, "page labels", work_);
+    all.page_labels.insert(all.page_labels.end(), labels.begin(), labels.end());
   }
 
   void add_areas(std::size_t m, const std::vector<Triangle>& uv_faces, UvMesh& all) {
@@ -201,6 +205,12 @@ std::vector<beltrami_uv_mesh> read_uv_headers(const beltrami_uv_mesh* const* mes
     }
     if (is_given(header.positions) != is_given(headers.front().positions)) {
       refuse("some meshes have positions, and some have none: give them with all, or with none");
+    }
+    if (is_given(header.page_labels) != is_given(headers.front().page_labels)) {
+      refuse("some meshes have page labels, and some have none: give them with all, or with none");
+    }
+    if (is_given(header.page_labels) && is_given(header.kept_pages)) {
+      refuse("page labels do not go with charts that stay: leave out one of them");
     }
     uvs += std::min(header.uv_count, kMaxVertices + 1);
     faces += std::min(header.face_count, kMaxFaces + 1);

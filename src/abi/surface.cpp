@@ -260,9 +260,8 @@ AtlasInput atlas_input(const beltrami_surface& header, const LoadedSurface& surf
     input.cuts.edges = read_seams(header, work);
   }
   if (is_given(header.face_labels)) {
-    per_triangle(
-        dense(read_integers(header.face_labels, header.face_count, 1, "face labels", work)),
-        input.cuts.labels);
+    per_triangle(read_integers(header.face_labels, header.face_count, 1, "face labels", work),
+                 input.cuts.labels);
   }
   if (is_given(header.densities)) per_triangle(read_densities(header, work), input.densities);
   if (islands) {

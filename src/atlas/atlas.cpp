@@ -86,6 +86,15 @@ std::vector<double> scale_by_density(const std::vector<double>& densities, const
   return scales;
 }
 
+/// Charts of faces with different labels are to share no page.
+void group_by_labels(const std::vector<std::uint64_t>& labels, const Admitted& admitted,
+                     const std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps) {
+  if (labels.empty()) return;
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    maps[c].page_group = labels[first_input_face(charts[c], admitted)];
+  }
+}
+
 /// As many charts as there may be; 0: any number.
 Index most_charts(const AtlasOptions& options, const Admitted& admitted) {
   if (!options.target || options.target->max_charts == 0) return 0;
@@ -113,6 +122,9 @@ double pack_onto_pages(const AtlasInput& input, const Admitted& admitted, int ex
                        Atlas& atlas) {
   const PackOptions pack = pack_options(options, exponent);
   if (pack.snap) align_to_borders(charts.charts, charts.maps);
+  if (options.label_pages) {
+    group_by_labels(input.cuts.labels, admitted, charts.charts, charts.maps);
+  }
   const bool is_painted = !input.hints.vertex_paint.empty() || !input.hints.edge_paint.empty();
   SplitRules rules{.price = is_painted ? 0 : options.fill_weight,
                    .most_charts = most_charts(options, admitted),

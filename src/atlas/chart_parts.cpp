@@ -79,6 +79,8 @@ std::vector<ChartPart> parts_along(const AtlasChart& chart, const MappedChart& m
     part.chart.real_faces = static_cast<Index>(first_virtual - own.input_face.begin());
     part.map.outcome = map.outcome;
     part.map.scale = map.scale;
+    part.map.own_turns = map.own_turns;
+    part.map.page_group = map.page_group;
     for (Index& v : own.input_vertex) {
       part.map.uvs.push_back(map.uvs[v]);
       v = chart.chart.input_vertex[v];

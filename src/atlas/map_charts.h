@@ -1,6 +1,7 @@
 // One chart -> its map, and all of them side by side.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -27,7 +28,8 @@ struct MappedChart {
   /// What is straight of it runs along the axes: 4, quarter turns alone keep it there; 2, half
   /// turns, since one coordinate of it was asked for; 0: it may be turned anyhow.
   int own_turns = 0;
-  Index failed_pin = kNone;  ///< in the list of all pins: could not be met with those before it
+  std::uint64_t page_group = 0;  ///< as PackChart has it
+  Index failed_pin = kNone;      ///< in the list of all pins: could not be met with those before it
 
   bool pinned() const { return !held.empty(); }
 };

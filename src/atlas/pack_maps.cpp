@@ -88,6 +88,7 @@ Pages pack_maps(const std::vector<AtlasChart>& charts, const PackOptions& option
     if (maps[c].error) continue;
     parts.push_back(real_part(charts[c], maps[c].uvs));
     parts.back().own_turns = maps[c].own_turns;
+    parts.back().group = maps[c].page_group;
     chart_of_part.push_back(static_cast<Index>(c));
   }
   Pages pages;

@@ -132,6 +132,7 @@ std::vector<UvChart> charts_of(const UvMesh& mesh, const std::vector<Index>& cha
   for (UvChart& chart : charts) {
     keep(mesh, chart);
     if (!mesh.own_turns.empty()) chart.shape.own_turns = mesh.own_turns[chart.faces.front()];
+    if (!mesh.page_labels.empty()) chart.shape.group = mesh.page_labels[chart.faces.front()];
     if (chart.shape.kept) continue;
     chart.origin = chart.shape.points.front();
     for (const Vec2& w : chart.shape.points) chart.origin = chart.origin.cwiseMin(w);

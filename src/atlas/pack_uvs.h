@@ -1,6 +1,7 @@
 // Anybody's charts -> pages of a texture: packing without unwrapping.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "atlas/pages.h"
@@ -27,6 +28,9 @@ struct UvMesh {
   /// Per face the turns of its chart, as PackChart has them; empty: 0. Equal for the faces of a
   /// chart.
   std::vector<int> own_turns = {};
+  /// Per face the label of its chart: charts of different labels share no page; empty: all may. A
+  /// chart has that of its least face. Not where charts stay.
+  std::vector<std::uint64_t> page_labels = {};
 };
 
 struct PackedUvs {

@@ -80,6 +80,7 @@ struct AtlasOptions {
   /// Seams that charts are split along for the sake of the pages: their length, in roots of the
   /// area, that all of the utilisation is worth; 0: none. Without texels per unit and paint alone.
   double fill_weight = 0;
+  bool label_pages = false;    ///< charts of faces with different labels share no page
   bool unit_square = false;    ///< scale what is not packed by a power of two into the unit square
   bool float32 = false;        ///< deliver single-precision numbers
   bool rectify_grids = false;  ///< charts that are grids of quads are laid out as such

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace beltrami {
 /// What the caller wants cut. Vertices, faces and corners are those of the input of admit.
 struct GivenCuts {
   std::vector<std::array<Index, 2>> edges;  ///< ends; pairs that are no edge mark nothing
-  std::vector<Index> labels;                ///< per face, or none: cut where they differ
+  std::vector<std::uint64_t> labels;        ///< per face, or none: cut where they differ
   std::vector<Vec2> corner_uvs;             ///< three per face, or none: cut where they differ
   double hard_angle = std::numbers::pi;     ///< cut where normals turn by more, in radians, but for
                                             ///< creases that part nothing and meet no border

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/types.h"
+#include "pack/groups.h"
 #include "pack/outline.h"
 #include "pack/problem.h"
 #include "pack/search.h"
@@ -65,6 +66,16 @@ Packing pack(std::span<const PackChart> charts, std::vector<Outline> outlines,
   return problem.packing(std::move(packed.placements), packed.texels_per_unit);
 }
 
+/// Charts of one group.
+Packing pack_group(std::span<const PackChart> charts, const PackOptions& options,
+                   const Work& work) {
+  std::vector<Outline> outlines(charts.size());
+  parallel_for(work, size_of(outlines), 16, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t c = begin; c < end; ++c) outlines[c] = outline_of(charts[c]);
+  });
+  return pack(charts, std::move(outlines), options, work);
+}
+
 }  // namespace
 
 Packing pack_charts(std::span<const PackChart> charts, const PackOptions& options,
@@ -72,11 +83,11 @@ Packing pack_charts(std::span<const PackChart> charts, const PackOptions& option
   check(options);
   check(charts, options);
   if (charts.empty()) return {};
-  std::vector<Outline> outlines(charts.size());
-  parallel_for(work, size_of(outlines), 16, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t c = begin; c < end; ++c) outlines[c] = outline_of(charts[c]);
-  });
-  return pack(charts, std::move(outlines), options, work);
+  if (!has_groups(charts)) return pack_group(charts, options, work);
+  return pack_groups(charts, options,
+                     [&](const std::vector<PackChart>& group, const PackOptions& own) {
+                       return pack_group(group, own, work.aside());
+                     });
 }
 
 Packing pack_outlines(std::vector<Outline> outlines, const PackOptions& options, const Work& work) {

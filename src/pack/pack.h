@@ -12,9 +12,11 @@ namespace beltrami {
 
 /// Places charts on pages: at least `margin` texels apart, also after their places have been
 /// divided by the resolution and rounded to single precision, and inside one another's holes where
-/// they fit. Charts with a kept placement stay, whatever they overlap, at the density given.
-/// The same bits at any number of threads. Throws Error INVALID_ARGUMENT where the options are out
-/// of range, a chart is kept and no density is given, or the charts do not fit into `max_pages`.
+/// they fit. Charts of different groups share no page: their pages follow one another by the number
+/// of the group, at one density. Charts with a kept placement stay, whatever they overlap, at the
+/// density given. The same bits at any number of threads. Throws Error INVALID_ARGUMENT where the
+/// options are out of range, a chart is kept and no density is given, or the charts do not fit into
+/// `max_pages`.
 Packing pack_charts(std::span<const PackChart> charts, const PackOptions& options,
                     const Work& work);
 

@@ -1,6 +1,7 @@
 // What is packed, how, and what comes of it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -31,6 +32,7 @@ struct PackChart {
   std::optional<Placement> kept = {};  ///< where it stays
   int own_turns = 0;                   ///< 4: quarter turns alone are tried, from what it is; 2:
                                        ///< half turns; 1: it is not turned; 0: as the others
+  std::uint64_t group = 0;             ///< charts of different groups share no page
 };
 
 struct PackOptions {
@@ -43,7 +45,7 @@ struct PackOptions {
   bool snap = false;           ///< whoever places the charts moves them by up to half a texel, onto
                                ///< texel edges
   int block = 1;               ///< charts share no block of so many texels per side
-  int max_pages = 1;
+  int max_pages = 1;           ///< of each group
   double effort = 1;  ///< work spent on trying other orders, to the default; 0: the first that fits
 };
 

@@ -42,7 +42,7 @@ struct Confetti {
   Uvs uvs;
   std::vector<std::array<std::uint32_t, 3>> faces;
   std::vector<std::array<double, 3>> positions;  ///< of UV vertices
-  std::vector<std::uint64_t> kept;
+  std::vector<std::uint64_t> kept, labels;
 
   explicit Confetti(std::uint32_t count, double size = 1) {
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -66,6 +66,7 @@ struct Confetti {
       mesh.positions = {positions.data(), 0, BELTRAMI_F64, 0};
     }
     if (!kept.empty()) mesh.kept_pages = {kept.data(), 0, BELTRAMI_U64, 0};
+    if (!labels.empty()) mesh.page_labels = {labels.data(), 0, BELTRAMI_U64, 0};
     return mesh;
   }
 };
@@ -311,6 +312,48 @@ TEST(AbiPacking, LeavesWhatStays) {
   const Uvs after = packed_uvs(context, 0, 18);
   for (std::size_t v = 0; v < 15; ++v) EXPECT_EQ(after[v], mesh.uvs[v]);
   EXPECT_GE(packing_of(context).margin, 2);
+}
+
+TEST(AbiPacking, LabelsHavePagesOfTheirOwn) {
+  Confetti one(4), other(2);
+  one.labels = {9, 4, 9, 4};
+  other.labels = {BELTRAMI_NO_ELEMENT, 9};
+  const Context context = create();
+  ASSERT_EQ(pack(context, {one.view(), other.view()}), BELTRAMI_OK) << message(context);
+  EXPECT_EQ(packing_of(context).pages, 3u) << "of 4, 9, and the greatest number";
+  std::vector<std::uint32_t> pages(6);
+  ASSERT_EQ(beltrami_get_chart_pages(context.get(), pages.data(), BELTRAMI_U32, 0), BELTRAMI_OK);
+  EXPECT_EQ(pages, (std::vector<std::uint32_t>{1, 0, 1, 0, 2, 1}));
+  EXPECT_EQ(pack(context, {one.view(), Confetti(2).view()}), BELTRAMI_E_INVALID_ARGUMENT)
+      << "all meshes have labels, or none";
+  one.kept.assign(4, 0);
+  EXPECT_EQ(pack(context, {one.view()}), BELTRAMI_E_INVALID_ARGUMENT);
+  EXPECT_NE(message(context).find("charts that stay"), std::string::npos);
+}
+
+TEST(AbiPacking, SurfacesOfOneLabelShareItsPages) {
+  const TriangleList mesh = meshes::cube();
+  std::vector<std::uint32_t> labels(12, 5);
+  for (std::size_t f = 0; f < 6; ++f) labels[f] = 8;
+  beltrami_surface surface = surface_view(mesh), whole = surface_view(mesh);
+  const std::vector<std::uint32_t> one_label(12, 8);
+  surface.face_labels = {labels.data(), 0, BELTRAMI_U32, 0};
+  whole.face_labels = {one_label.data(), 0, BELTRAMI_U32, 0};
+  const Context context = create();
+  ASSERT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_LABEL_PAGES, 1), BELTRAMI_OK);
+  const std::array<const beltrami_surface*, 2> both = {&surface, &whole};
+  ASSERT_EQ(beltrami_unwrap_surfaces(context.get(), both.data(), 2, nullptr, nullptr), BELTRAMI_OK)
+      << message(context);
+  EXPECT_EQ(packing_of(context).pages, 2u);
+  std::vector<std::uint32_t> pages(72);
+  ASSERT_EQ(beltrami_get_corner_pages(context.get(), pages.data(), BELTRAMI_U32, 0), BELTRAMI_OK);
+  for (std::size_t c = 0; c < 72; ++c) EXPECT_EQ(pages[c], c < 18 || c >= 36 ? 1u : 0u) << c;
+  surface.face_labels = {};
+  EXPECT_EQ(beltrami_unwrap(context.get(), &surface, nullptr, nullptr), BELTRAMI_E_INVALID_ARGUMENT)
+      << "there are no labels";
+  ASSERT_EQ(beltrami_set_int(context.get(), BELTRAMI_OPTION_STACK, BELTRAMI_STACK_COPIES),
+            BELTRAMI_OK);
+  EXPECT_EQ(beltrami_unwrap(context.get(), &whole, nullptr, nullptr), BELTRAMI_E_INVALID_ARGUMENT);
 }
 
 TEST(AbiPacking, SaysWhatIsFlipped) {

@@ -35,13 +35,14 @@ std::map<std::int32_t, std::int32_t> types_of(Options... options) {
 
 TEST(CppOptions, EveryOptionHasAKeyOfItsType) {
   using namespace option;  // NOLINT(google-build-using-namespace)
-  const auto types = types_of(
-      kMethod, kEnergy, kCoarseFaces, kTolerance, kMaxIterations, kThreads, kUnitSquare, kFlatten,
-      kInjectivity, kRefine, kRefineIterations, kTimeLimit, kFloat32, kDelaunay, kMemoryLimit, kCut,
-      kHardAngle, kWeld, kWeldDistance, kFillHoles, kShareCopies, kPreset, kTargetEnergy,
-      kTargetP99, kMaxCharts, kSeamBudget, kConcaveSeams, kHiddenSeams, kHardSeams, kMaterialSeams,
-      kPack, kResolution, kMargin, kTexelsPerUnit, kMaxPages, kPackTurns, kPackBlock, kFillWeight,
-      kSymmetricSeams, kStraightSeams, kEffort, kFlatSeams, kStack, kRectify, kSnapTexels);
+  const auto types =
+      types_of(kMethod, kEnergy, kCoarseFaces, kTolerance, kMaxIterations, kThreads, kUnitSquare,
+               kFlatten, kInjectivity, kRefine, kRefineIterations, kTimeLimit, kFloat32, kDelaunay,
+               kMemoryLimit, kCut, kHardAngle, kWeld, kWeldDistance, kFillHoles, kShareCopies,
+               kPreset, kTargetEnergy, kTargetP99, kMaxCharts, kSeamBudget, kConcaveSeams,
+               kHiddenSeams, kHardSeams, kMaterialSeams, kPack, kResolution, kMargin,
+               kTexelsPerUnit, kMaxPages, kPackTurns, kPackBlock, kFillWeight, kSymmetricSeams,
+               kStraightSeams, kEffort, kFlatSeams, kStack, kRectify, kSnapTexels, kLabelPages);
   const std::vector<OptionInfo> all = options();
   EXPECT_EQ(types.size(), all.size());
   for (const OptionInfo& info : all) {

@@ -219,6 +219,11 @@ TEST(CppPacking, HasTheUvsOfEveryMesh) {
   const Packing again = context.pack(
       {UvMesh(placed, quad.faces).kept_pages(stays), UvMesh(moved, quad.faces).kept_pages(anew)});
   EXPECT_EQ(again.uvs(0), placed);
+
+  const std::vector<std::uint32_t> last{7, 7}, first{2, 2};
+  const Packing apart = context.pack(
+      {UvMesh(placed, quad.faces).page_labels(last), UvMesh(moved, quad.faces).page_labels(first)});
+  EXPECT_EQ(apart.chart_pages(), (std::vector<std::uint32_t>{1, 0}));
 }
 
 TEST(CppPacking, PositionsGiveEqualDensity) {
@@ -239,6 +244,8 @@ TEST(CppPacking, PositionsGiveEqualDensity) {
             Status::kInvalidArgument);
   const std::vector<std::uint32_t> pages(1);
   EXPECT_EQ(context.try_pack(UvMesh(uvs, quad.faces).kept_pages(pages)).status(),
+            Status::kInvalidArgument);
+  EXPECT_EQ(context.try_pack(UvMesh(uvs, quad.faces).page_labels(pages)).status(),
             Status::kInvalidArgument);
 }
 

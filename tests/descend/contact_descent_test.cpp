@@ -1,6 +1,8 @@
 // Newton with contact of the boundary, on disks that cover themselves at their free minimum.
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 #include <string>

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -230,6 +231,37 @@ TEST(Pack, SeveralPagesAreFilledAtOneDensity) {
   expect_sound(charts, options, three);
   EXPECT_EQ(three.pages, 3);
   EXPECT_GT(three.texels_per_unit, 1.4 * one.texels_per_unit);
+}
+
+TEST(Pack, GroupsShareNoPageAndHaveOneDensity) {
+  std::vector<PackChart> charts = shards(30);
+  for (std::size_t c = 0; c < charts.size(); ++c) charts[c].group = c % 5 == 0 ? 7 : c % 2;
+  PackOptions options;
+  options.effort = 0.1;
+  const Packing packing = pack_charts(charts, options, Work());
+  EXPECT_EQ(packing.pages, 3) << "one for each";
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    EXPECT_EQ(packing.placements[c].page, charts[c].group == 7 ? 2 : static_cast<int>(c % 2));
+  }
+  // The greatest density at which each of them fits by itself.
+  double least = HUGE_VAL;
+  for (const std::uint64_t group : {0, 1, 7}) {
+    std::vector<PackChart> own;
+    for (const PackChart& chart : charts) {
+      if (chart.group == group) own.push_back(chart);
+    }
+    least = std::min(least, pack_charts(own, options, Work()).texels_per_unit);
+  }
+  EXPECT_LE(packing.texels_per_unit, least);
+  EXPECT_GE(packing.texels_per_unit, 0.97 * least);
+  expect_same(packing, pack_charts(charts, options, Work(2)));
+  options.texels_per_unit = 1.6 * least;
+  options.max_pages = 9;
+  const Packing denser = pack_charts(charts, options, Work());
+  EXPECT_GT(denser.pages, 3);
+  EXPECT_EQ(denser.texels_per_unit, options.texels_per_unit);
+  options.max_pages = denser.pages;
+  expect_sound(charts, options, denser);
 }
 
 TEST(Pack, ChartsThatAreKeptStay) {

@@ -70,6 +70,42 @@ TEST(Pack, EvensDensitiesOutAndKeepsWhatFacesHave) {
   EXPECT_TRUE(read_image(directory.read("p.png")).has_value());
 }
 
+TEST(Pack, MaterialsOfOneNameShareTilesAndOthersDoNot) {
+  const TemporaryDirectory directory;
+  std::string green = kSquares;
+  green.replace(green.find("usemtl red"), 10, "usemtl green");
+  std::string both = kSquares;
+  both.insert(both.rfind("f 5/5"), "usemtl green\n");
+  const std::string one = directory.file("one.obj", both),
+                    other = directory.file("other.obj", green);
+  const std::string out = directory.path("out.obj"), second = directory.path("second.obj");
+  const Outcome outcome = run({"pack", one, other, "--output", out, second, "--labels", "materials",
+                               "--report", directory.path("r.json")});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("label      1001: usemtl red\nlabel      1002: usemtl green\n"),
+            std::string::npos)
+      << outcome.out;
+  const auto tiles = [&](const std::string& path) {
+    std::vector<int> found;
+    for (const auto& [u, v] : corner_uvs(path)) found.push_back(static_cast<int>(std::floor(u)));
+    return found;
+  };
+  EXPECT_EQ(tiles(out), (std::vector<int>{0, 0, 0, 0, 1, 1, 1, 1}));
+  EXPECT_EQ(tiles(second), std::vector<int>(8, 1));
+  const Json labels = Json::parse(directory.read("r.json"))["packing"]["labels"];
+  ASSERT_EQ(labels.size(), 2u);
+  EXPECT_EQ(labels[1]["name"], "usemtl green");
+  EXPECT_EQ(labels[1]["first_page"], 1);
+  EXPECT_EQ(labels[1]["last_page"], 1);
+  EXPECT_EQ(run({"check", out, "--within-tiles"}).exit_code, 0);
+  EXPECT_NE(run({"pack", one, out, "--labels", "objects"}).err.find("no objects to give pages to"),
+            std::string::npos);
+  const Outcome refused =
+      run({"pack", one, other, "--output", out, second, "--labels", "materials", "--kept", "1"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("--labels and --kept"), std::string::npos) << refused.err;
+}
+
 TEST(Pack, KeepsScalesWhereAsked) {
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.obj", kSquares), out = directory.path("out.ply");

@@ -99,6 +99,25 @@ TEST(Unwrap, WritesTheTrianglesOnDemand) {
   EXPECT_EQ(run({"check", out}).exit_code, 0);
 }
 
+TEST(Unwrap, GivesMaterialsTilesOfTheirOwn) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file("in.obj", kCube), out = directory.path("out.obj");
+  const Outcome outcome = run({"unwrap", in, out, "--labels", "materials", "--label-pages"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("label      1001: usemtl red\nlabel      1002: usemtl blue\n"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(run({"check", out, "--within-tiles", "--margin", "2"}).exit_code, 0);
+  const MeshFile file = read_mesh(out, Content::kUvs);
+  for (std::size_t c = 0; c < 24; ++c) {
+    const double u = file.corner_uvs.values[2 * file.corner_uvs.of_corner[c]];
+    EXPECT_EQ(u > 1, c >= 12) << c;
+  }
+  const Outcome refused = run({"unwrap", in, out, "--label-pages"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("say by --labels which"), std::string::npos) << refused.err;
+}
+
 TEST(Unwrap, CutsAlongMaterialsSeamsAnglesAndIslands) {
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.obj", kCube), out = directory.path("out.obj");

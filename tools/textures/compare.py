@@ -86,7 +86,8 @@ class Page:
         """Have all models drawn; `results` are their pictures."""
         server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, page=self))
         threading.Thread(target=server.serve_forever, daemon=True).start()
-        with tempfile.TemporaryDirectory() as profile:
+        # Processes of the browser's own write for a moment after it has ended.
+        with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
             words = [browser, "--headless=new", "--no-sandbox", "--enable-unsafe-swiftshader"]
             words += [
                 "--use-angle=swiftshader",

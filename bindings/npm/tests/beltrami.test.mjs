@@ -74,6 +74,8 @@ test('packs charts of several meshes', () => {
   assert.equal(packing.chartPages.length, 2);
   assert.equal(packing.certificate.injective, true);
   assert.ok(packing.report.margin >= 4);
+  const labelled = (label) => ({ ...mesh, pageLabels: Uint32Array.of(label) });
+  assert.deepEqual([...beltrami.pack([labelled(3), labelled(1)]).chartPages].map(Number), [1, 0]);
 });
 
 test('options are those of the table', () => {

@@ -114,6 +114,22 @@ def test_charts_stay_where_they_are() -> None:
         beltrami.pack(beltrami.UvMesh(mesh.uvs, mesh.uv_faces, kept_pages=[0, 1]))
 
 
+def test_labels_have_pages_of_their_own() -> None:
+    mesh = confetti(3)
+    labelled = beltrami.UvMesh(mesh.uvs, mesh.uv_faces, page_labels=[8, 3, 8])
+    packing = beltrami.pack(labelled)
+    assert packing.page_of_chart.tolist() == [1, 0, 1]
+    assert packing.udim_uvs[0].max() > 1
+    with pytest.raises(ValueError, match="page_labels has the shape"):
+        beltrami.pack(beltrami.UvMesh(mesh.uvs, mesh.uv_faces, page_labels=[8]))
+    tetrahedron = (np.eye(4, 3), [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    labels = np.array([1, 0, 0, 1])
+    atlas = beltrami.unwrap(*tetrahedron, face_labels=labels, label_pages=True)
+    assert (atlas.page_of_uv[atlas.uv_triangles] == labels[:, None]).all()
+    with pytest.raises(ValueError, match="no face labels"):
+        beltrami.unwrap(*tetrahedron, label_pages=True)
+
+
 def test_single_precision_in_and_out() -> None:
     mesh = confetti(5)
     uvs = np.asarray(mesh.uvs, np.float32)

@@ -138,6 +138,7 @@ inline constexpr Real kFlatSeams{BELTRAMI_OPTION_FLAT_SEAMS};
 inline constexpr Option<Stack> kStack{BELTRAMI_OPTION_STACK};
 inline constexpr Option<Rectify> kRectify{BELTRAMI_OPTION_RECTIFY};
 inline constexpr Integer kSnapTexels{BELTRAMI_OPTION_SNAP_TEXELS};
+inline constexpr Integer kLabelPages{BELTRAMI_OPTION_LABEL_PAGES};
 }  // namespace option
 
 /// The value of an option whose type is known when the program runs: an integer, a number, the enum

@@ -208,6 +208,13 @@ class UvMesh {
     if (pages.size() != faces()) note("there is not one page per face");
     return *this;
   }
+  /// A label for each face: charts of different labels get different pages.
+  UvMesh& page_labels(const Indices<1>& labels) noexcept {
+    mesh_.page_labels = labels.buffer();
+    note(labels.defect());
+    if (labels.size() != faces()) note("there is not one label per face");
+    return *this;
+  }
   /// As of Surface; that of the first mesh counts.
   UvMesh& cancel(const std::int32_t* flag) noexcept {
     mesh_.cancel = flag;

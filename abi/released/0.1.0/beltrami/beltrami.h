@@ -236,8 +236,9 @@ enum {
   BELTRAMI_OPTION_FLAT_SEAMS = 41,     /* float: how much longer, where parts then unfold flat; 0 */
   BELTRAMI_OPTION_STACK = 42,          /* choice: BELTRAMI_STACK_ */
   /* Of the maps of charts, for beltrami_unwrap. */
-  BELTRAMI_OPTION_RECTIFY = 43,    /* choice: BELTRAMI_RECTIFY_ */
-  BELTRAMI_OPTION_SNAP_TEXELS = 44 /* int: 1 puts straight borders onto the edges of texels */
+  BELTRAMI_OPTION_RECTIFY = 43,     /* choice: BELTRAMI_RECTIFY_ */
+  BELTRAMI_OPTION_SNAP_TEXELS = 44, /* int: 1 puts straight borders onto the edges of texels */
+  BELTRAMI_OPTION_LABEL_PAGES = 45  /* int: 1 gives each label pages of its own */
 };
 
 /* How long short seams are searched for, and a dense packing. Every level has the same promises. */
@@ -991,6 +992,10 @@ typedef struct beltrami_uv_mesh {
                                * chart of the face is placed anew; else it stays where its UVs, in
                                * [0,1]^2, are on this page. The same for all faces of a chart */
   const int32_t* cancel;      /* of the first mesh: as in beltrami_mesh */
+  /* Optional: face_count items of 1: U32 or U64. Charts of different labels get different pages, in
+   * the order of the labels; a chart has that of its first face. All meshes have them, or none, and
+   * none has kept_pages. */
+  beltrami_buffer page_labels;
 } beltrami_uv_mesh;
 
 /* Packs the charts of `mesh_count` meshes onto common pages: each is moved and turned as the

@@ -314,4 +314,10 @@ OPTIONS = (
         "True turns each chart to the most of its border that is straight, then by quarters alone, and moves straight borders onto the edges of texels. Lightmaps and pixel art want that. Nothing moves by more than half a texel, and charts keep a texel more room.",
         True, False, False,
     ),
+    Option(
+        "label_pages", "bool", False, 0.0, 1.0,
+        (),
+        "True puts charts of faces with different labels on different pages, in the order of the labels, as tiles of UDIM by material. All have one density, and max-pages counts the pages of each label.",
+        True, False, False,
+    ),
 )

@@ -114,6 +114,7 @@ namespace Beltrami
         Stack = 42,
         Rectify = 43,
         SnapTexels = 44,
+        LabelPages = 45,
     }
 
     /// <summary>How long short seams are searched for, and a dense packing. Every level has the
@@ -716,6 +717,7 @@ namespace Beltrami
         public NativeBuffer KeptPages;
         /// <summary>Of the first mesh: as in beltrami_mesh.</summary>
         public IntPtr Cancel;
+        public NativeBuffer PageLabels;
     }
 
     /// <summary>What lies on the pages.</summary>

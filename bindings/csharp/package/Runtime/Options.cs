@@ -410,5 +410,14 @@ namespace Beltrami
             get { return Get(Option.SnapTexels) != 0; }
             set { SetInt(Option.SnapTexels, value ? 1 : 0); }
         }
+
+        /// <summary>True puts charts of faces with different labels on different pages, in the
+        /// order of the labels, as tiles of UDIM by material. All have one density, and max-pages
+        /// counts the pages of each label. Default: false.</summary>
+        public bool LabelPages
+        {
+            get { return Get(Option.LabelPages) != 0; }
+            set { SetInt(Option.LabelPages, value ? 1 : 0); }
+        }
     }
 }

@@ -41,6 +41,10 @@ class UvMesh:
     kept_pages : (m,) array_like of integers, optional
         -1 where the chart of a face is placed anew; else the page on which it stays where it is, in
         the unit square. The same for all faces of a chart.
+    page_labels : (m,) array_like of integers, optional
+        Charts of faces with different labels get different pages, in the order of the labels. A
+        chart has the label of its first face. All meshes have them, or none, and none has
+        `kept_pages`.
 
     Examples
     --------
@@ -55,21 +59,28 @@ class UvMesh:
     vertices: npt.ArrayLike | None = None
     faces: npt.ArrayLike | None = None
     kept_pages: npt.ArrayLike | None = None
+    page_labels: npt.ArrayLike | None = None
 
     def arrays(self) -> UvArrays:
         """Return the arrays as the library reads them. Raises TypeError, ValueError."""
-        kept = None
-        if self.kept_pages is not None:
-            kept = np.ascontiguousarray(self.kept_pages, np.int64)
-            if kept.shape != (len(np.asarray(self.uv_faces)),):
-                raise ValueError(f"kept_pages has the shape {kept.shape}: give one for each face")
         return UvArrays(
             _arrays.coordinates(self.uvs),
             _arrays.indices(self.uv_faces),
             None if self.vertices is None else _arrays.positions(self.vertices),
             None if self.faces is None else _arrays.indices(self.faces),
-            kept,
+            self._of_faces("kept_pages"),
+            self._of_faces("page_labels"),
         )
+
+    def _of_faces(self, name: str) -> Array | None:
+        """Return integers that are given for each face, or None."""
+        given = getattr(self, name)
+        if given is None:
+            return None
+        numbers = np.ascontiguousarray(given, np.int64)
+        if numbers.shape != (len(np.asarray(self.uv_faces)),):
+            raise ValueError(f"{name} has the shape {numbers.shape}: give one for each face")
+        return numbers
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,7 +20,7 @@ _WITHOUT_EFFECT = (
     *("unit_square", "cut", "hard_angle", "preset", "target_energy", "target_p99", "max_charts"),
     *("seam_budget", "concave_seams", "hidden_seams", "hard_seams", "material_seams"),
     *("symmetric_seams", "straight_seams", "flat_seams", "fill_weight"),
-    *("pack", "stack", "rectify", "snap_texels"),
+    *("pack", "stack", "rectify", "snap_texels", "label_pages"),
 )
 
 

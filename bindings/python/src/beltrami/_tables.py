@@ -99,6 +99,7 @@ class UnwrapOptions(TypedDict, total=False):
     stack: StackChoice
     rectify: RectifyChoice
     snap_texels: bool
+    label_pages: bool
 
 
 class PackOptions(TypedDict, total=False):

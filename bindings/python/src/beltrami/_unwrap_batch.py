@@ -78,6 +78,7 @@ def unwrap_batch(
     stack: StackChoice = "none",
     rectify: RectifyChoice = "none",
     snap_texels: bool = False,
+    label_pages: bool = False,
     # end of options
     labels: str | None = None,
     triangulate: bool = False,
@@ -282,6 +283,10 @@ def unwrap_batch(
         True turns each chart to the most of its border that is straight, then by quarters alone,
         and moves straight borders onto the edges of texels. Lightmaps and pixel art want that.
         Nothing moves by more than half a texel, and charts keep a texel more room.
+    label_pages : bool, default False
+        True puts charts of faces with different labels on different pages, in the order of the
+        labels, as tiles of UDIM by material. All have one density, and max-pages counts the pages
+        of each label.
 
     Returns
     -------
@@ -357,6 +362,7 @@ def unwrap_batch(
         "stack": stack,
         "rectify": rectify,
         "snap_texels": snap_texels,
+        "label_pages": label_pages,
         # end of options
     }
     options = _library.Context().set_options(given, _library.UNWRAP)

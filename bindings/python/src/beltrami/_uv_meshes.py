@@ -23,6 +23,7 @@ class UvArrays:
     vertices: Array | None = None
     faces: Array | None = None
     kept_pages: Array | None = None  # int64, -1 for faces whose charts are placed
+    page_labels: Array | None = None  # int64
 
     def struct(self) -> Any:
         """Return the ``beltrami_uv_mesh``, which is good as long as the arrays are."""
@@ -35,6 +36,8 @@ class UvArrays:
                 mesh.indices = buffer(self.faces)
         if self.kept_pages is not None:
             mesh.kept_pages = buffer(self.kept_pages)
+        if self.page_labels is not None:
+            mesh.page_labels = buffer(self.page_labels)
         return mesh
 
 

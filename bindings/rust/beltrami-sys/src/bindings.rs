@@ -293,6 +293,8 @@ pub const BELTRAMI_OPTION_STACK: _bindgen_ty_3 = 42;
 pub const BELTRAMI_OPTION_RECTIFY: _bindgen_ty_3 = 43;
 /// int: 1 puts straight borders onto the edges of texels
 pub const BELTRAMI_OPTION_SNAP_TEXELS: _bindgen_ty_3 = 44;
+/// int: 1 gives each label pages of its own
+pub const BELTRAMI_OPTION_LABEL_PAGES: _bindgen_ty_3 = 45;
 pub type _bindgen_ty_3 = ::core::ffi::c_int;
 pub const BELTRAMI_EFFORT_FORCE_SIGNED_: _bindgen_ty_4 = -1;
 /// Half the time of NORMAL, seams some 2% longer.
@@ -1943,11 +1945,15 @@ pub struct beltrami_uv_mesh {
     pub kept_pages: beltrami_buffer,
     /// of the first mesh: as in beltrami_mesh
     pub cancel: *const i32,
+    /** Optional: face_count items of 1: U32 or U64. Charts of different labels get different pages, in
+ the order of the labels; a chart has that of its first face. All meshes have them, or none, and
+ none has kept_pages.*/
+    pub page_labels: beltrami_buffer,
 }
 #[allow(clippy::unnecessary_operation, clippy::identity_op)]
 #[cfg(target_pointer_width = "64")]
 const _: () = {
-    ["Size of beltrami_uv_mesh"][::core::mem::size_of::<beltrami_uv_mesh>() - 160usize];
+    ["Size of beltrami_uv_mesh"][::core::mem::size_of::<beltrami_uv_mesh>() - 184usize];
     [
         "Alignment of beltrami_uv_mesh",
     ][::core::mem::align_of::<beltrami_uv_mesh>() - 8usize];
@@ -1984,6 +1990,9 @@ const _: () = {
     [
         "Offset of field: beltrami_uv_mesh::cancel",
     ][::core::mem::offset_of!(beltrami_uv_mesh, cancel) - 152usize];
+    [
+        "Offset of field: beltrami_uv_mesh::page_labels",
+    ][::core::mem::offset_of!(beltrami_uv_mesh, page_labels) - 160usize];
 };
 impl Default for beltrami_uv_mesh {
     fn default() -> Self {

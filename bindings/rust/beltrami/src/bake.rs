@@ -16,6 +16,7 @@ use crate::surface::Integers;
 use crate::view::Buffer;
 
 mod sealed {
+    #[allow(unknown_lints, unnameable_types)] // so that nobody implements it
     pub trait Sealed {
         /// The `BELTRAMI_SCALAR` number of the type.
         const TYPE: i32;

@@ -46,7 +46,7 @@ pub use library::{build_info, has, version};
 pub use mesh::{Faces, Mesh, Positions, Uv, Uvs, UvsMut};
 pub use options::{
     Cut, Delaunay, Effort, Energy, Flatten, Injectivity, Method, OptionInfo, OptionKind, Options,
-    Pack, PackOptions, PackTurns, Preset, UnwrapOptions, Weld, OPTIONS,
+    Pack, PackOptions, PackTurns, Preset, Rectify, Stack, UnwrapOptions, Weld, OPTIONS,
 };
 pub use packer::{Packer, UvMesh};
 pub use packing::{Packing, PageSummary, Texel};

@@ -144,6 +144,7 @@ where
 
 pub(crate) mod private {
     /// Keeps [`Uv`](super::Uv) to the types that this crate knows.
+    #[allow(unknown_lints, unnameable_types)] // so that nobody implements it
     pub trait Sealed {}
     impl<T: crate::view::Real> Sealed for [T; 2] {}
 }

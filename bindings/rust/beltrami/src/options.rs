@@ -10,8 +10,8 @@ use beltrami_sys as sys;
 
 use crate::error::Error;
 pub use table::{
-    Cut, Delaunay, Effort, Energy, Flatten, Injectivity, Method, Pack, PackTurns, Preset, Weld,
-    OPTIONS,
+    Cut, Delaunay, Effort, Energy, Flatten, Injectivity, Method, Pack, PackTurns, Preset, Rectify,
+    Stack, Weld, OPTIONS,
 };
 
 /// What an option takes.

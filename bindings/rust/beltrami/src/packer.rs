@@ -24,6 +24,7 @@ pub struct UvMesh<'a> {
     positions: Option<Positions<'a>>,
     faces: Option<Faces<'a>>,
     kept_pages: Option<Integers<'a>>,
+    page_labels: Option<Integers<'a>>,
 }
 
 impl<'a> UvMesh<'a> {
@@ -35,6 +36,7 @@ impl<'a> UvMesh<'a> {
             positions: None,
             faces: None,
             kept_pages: None,
+            page_labels: None,
         }
     }
 
@@ -60,11 +62,22 @@ impl<'a> UvMesh<'a> {
         self
     }
 
+    /// A label for each triangle: charts of different labels get different pages, in the order of
+    /// the labels. A chart has that of its first triangle. All meshes have labels, or none, and none
+    /// has [`kept_pages`](Self::kept_pages).
+    pub fn page_labels(mut self, labels: impl Into<Integers<'a>>) -> Self {
+        self.page_labels = Some(labels.into());
+        self
+    }
+
     /// The library's description, which holds as long as the borrow and the token.
     fn raw(&self, token: &CancelToken) -> Result<sys::beltrami_uv_mesh, Error> {
         let faces = self.uv_faces.len();
-        let lengths =
-            [self.faces.map(|faces| faces.len()), self.kept_pages.map(|pages| pages.len())];
+        let lengths = [
+            self.faces.map(|faces| faces.len()),
+            self.kept_pages.map(|pages| pages.len()),
+            self.page_labels.map(|labels| labels.len()),
+        ];
         if let Some(other) = lengths.into_iter().flatten().find(|&length| length != faces) {
             return Err(Error::argument(format!(
                 "there are {other} items for {faces} faces: give one per face"
@@ -80,6 +93,7 @@ impl<'a> UvMesh<'a> {
             positions: self.positions.map_or_else(Default::default, |p| p.0.raw()),
             indices: self.faces.map_or_else(Default::default, |f| f.0.raw()),
             kept_pages: self.kept_pages.map_or_else(Default::default, |k| k.0.raw()),
+            page_labels: self.page_labels.map_or_else(Default::default, |l| l.0.raw()),
             cancel: token.number(),
             ..Default::default()
         })

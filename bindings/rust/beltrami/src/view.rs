@@ -12,6 +12,7 @@ use crate::error::Error;
 
 mod sealed {
     /// Keeps [`Scalar`](super::Scalar) to the types that the library knows.
+    #[allow(unknown_lints, unnameable_types)] // so that nobody implements it
     pub trait Sealed {
         /// The `BELTRAMI_SCALAR` number of the type.
         const TYPE: i32;

@@ -62,6 +62,17 @@ fn charts_stay_where_they_are() {
 }
 
 #[test]
+fn labels_have_pages_of_their_own() {
+    let (uvs, faces, _) = confetti(3, 1.0);
+    let mut packer = Packer::new().unwrap();
+    let labelled = UvMesh::new(&uvs, &faces).page_labels(&[8_u32, 3, 8]);
+    let packing = packer.pack(&[labelled]).unwrap();
+    assert_eq!(packing.chart_pages(), [1, 0, 1]);
+    let short = UvMesh::new(&uvs, &faces).page_labels(&[8_u32]);
+    assert_eq!(packer.pack(&[short]).unwrap_err().kind, ErrorKind::InvalidArgument);
+}
+
+#[test]
 fn an_atlas_lies_on_pages() {
     let positions = [[0.0_f64, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let faces = [[0_u32, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];

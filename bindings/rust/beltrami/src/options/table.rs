@@ -642,4 +642,13 @@ options! {
     snap_texels(bool) of [UnwrapOptions] = 44 "snap-texels"
         "1 turns each chart to the most of its border that is straight, then by quarters alone, and moves straight borders onto the edges of texels. Lightmaps and pixel art want that. Nothing moves by more than half a texel, and charts keep a texel more room."
         Switch(&[]), 0..=1, default 0, calls 2;
+
+    /// `true` puts charts of faces with different labels on different pages, in the order of the
+    /// labels, as tiles of UDIM by material. All have one density, and max-pages counts the pages
+    /// of each label.
+    ///
+    /// Default: `false`.
+    label_pages(bool) of [UnwrapOptions] = 45 "label-pages"
+        "1 puts charts of faces with different labels on different pages, in the order of the labels, as tiles of UDIM by material. All have one density, and max-pages counts the pages of each label."
+        Switch(&[]), 0..=1, default 0, calls 2;
 }
