@@ -97,7 +97,7 @@ struct Input {
     out.face_count = faces;
     out.uvs = uvs.buffer;
     out.uv_indices = indices.buffer;
-    if (data.ConsumeIntegralInRange(0, 3) == 3) out.page_labels = indices.buffer;
+    if (data.ConsumeIntegralInRange(0, 3) == 3) out.page_labels = labels.buffer;
     out.cancel = &stop;
     return out;
   }

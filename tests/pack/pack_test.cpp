@@ -255,7 +255,7 @@ TEST(Pack, GroupsShareNoPageAndHaveOneDensity) {
   EXPECT_LE(packing.texels_per_unit, least);
   EXPECT_GE(packing.texels_per_unit, 0.97 * least);
   expect_same(packing, pack_charts(charts, options, Work(2)));
-  options.texels_per_unit = 1.6 * least;
+  options.texels_per_unit = 1.2 * least;
   options.max_pages = 9;
   const Packing denser = pack_charts(charts, options, Work());
   EXPECT_GT(denser.pages, 3);

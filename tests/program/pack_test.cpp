@@ -98,7 +98,8 @@ TEST(Pack, MaterialsOfOneNameShareTilesAndOthersDoNot) {
   EXPECT_EQ(labels[1]["first_page"], 1);
   EXPECT_EQ(labels[1]["last_page"], 1);
   EXPECT_EQ(run({"check", out, "--within-tiles"}).exit_code, 0);
-  EXPECT_NE(run({"pack", one, out, "--labels", "objects"}).err.find("no objects to give pages to"),
+  EXPECT_NE(run({"pack", one, directory.path("no.obj"), "--labels", "objects"})
+                .err.find("no objects to give pages to"),
             std::string::npos);
   const Outcome refused =
       run({"pack", one, other, "--output", out, second, "--labels", "materials", "--kept", "1"});
