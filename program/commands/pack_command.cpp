@@ -18,6 +18,7 @@
 #include "commands/pages.h"
 #include "commands/progress_bar.h"
 #include "commands/report.h"
+#include "commands/tiles.h"
 #include "commands/uv_mesh.h"
 #include "files/atomic_file.h"
 #include "files/given_cuts.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "commands/command.h"
-#include "commands/pages.h"
+#include "commands/tiles.h"
 #include "commands/uv_mesh.h"
 #include "files/given_cuts.h"
 #include "process/interrupt.h"

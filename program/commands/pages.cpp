@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "commands/command.h"
+#include "commands/tiles.h"
 #include "picture/stb_in_one_place.h"
 #include "process/interrupt.h"
 

@@ -7,26 +7,12 @@
 #include <deque>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "commands/report.h"
 #include "files/atomic_file.h"
 
 namespace beltrami::cli {
-
-/// Pages in a row of UDIM.
-inline constexpr std::uint64_t kPagesInARow = 10;
-/// Rows of them that numbers of four digits have.
-inline constexpr std::uint64_t kMostRowsOfPages = 100;
-/// The number of the first page.
-inline constexpr std::uint64_t kFirstTile = 1001;
-
-/// The least u and v of a page in a file.
-inline std::pair<double, double> corner_of_page(std::uint64_t page) {
-  const std::uint64_t column = page % kPagesInARow, row = page / kPagesInARow;
-  return {static_cast<double>(column), static_cast<double>(row)};
-}
 
 /// "folder/name.1002.png" of page 1 for "folder/name.png", "folder/name.1001.png", "folder/name".
 std::string path_of_page(const std::string& path, std::uint64_t page);

@@ -1,4 +1,5 @@
 #include "commands/report.h"
+#include "commands/tiles.h"
 
 #include <algorithm>
 #include <cmath>

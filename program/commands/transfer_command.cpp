@@ -20,6 +20,7 @@
 #include "commands/pages.h"
 #include "commands/report.h"
 #include "commands/spelling.h"
+#include "commands/tiles.h"
 #include "files/atomic_file.h"
 #include "files/mesh_file.h"
 #include "files/polygons.h"

@@ -15,6 +15,7 @@
 #include "commands/pages.h"
 #include "commands/progress_bar.h"
 #include "commands/report.h"
+#include "commands/tiles.h"
 #include "commands/to_gltf.h"
 #include "files/atomic_file.h"
 #include "files/given_cuts.h"
