@@ -130,9 +130,49 @@ struct Scene {
     if (data.ConsumeIntegralInRange(0, 3) == 0) normals = of_corners(data, 9 * faces, 1);
     if (data.ConsumeIntegralInRange(0, 3) == 0) tangents = of_corners(data, 12 * faces, 1);
     fill();
+    if (data.ConsumeIntegralInRange(0, 3) == 0) look_along_rays(data);
+    if (data.ConsumeIntegralInRange(0, 15) == 0) spoil(data);
   }
 
  private:
+  void look_along_rays(Provider& data) {
+    if (source_faces > 0) job.cage = data.ConsumeIntegralInRange(-1, 8) / 8.0;
+    if (data.ConsumeBool()) return;
+    job.pixels = BELTRAMI_PIXELS_OCCLUSION;
+    job.rays = data.ConsumeIntegralInRange<std::uint64_t>(0, 4);
+    if (data.ConsumeIntegralInRange(0, 7) != 0) job.image_count = 1;
+  }
+
+  /// Numbers that no job has.
+  void spoil(Provider& data) {
+    switch (data.ConsumeIntegralInRange(0, 7)) {
+      case 0:
+        images.views[0].type = -1;
+        break;
+      case 1:
+        images.views[0].stride = 1;
+        break;
+      case 2:
+        // Of one image it would be the host's word, which is not checked.
+        if (images.views.size() > 1) images.views.back().channels = images.channels % 4 + 1;
+        break;
+      case 3:
+        job.pixels = 77;
+        break;
+      case 4:
+        job.rays = 5000;
+        break;
+      case 5:
+        job.cage = -1;
+        break;
+      case 6:
+        job.page_count = 0;
+        break;
+      default:
+        job.gutter = 1 << 20;
+    }
+  }
+
   static beltrami_buffer pages_view(const std::vector<std::uint64_t>& pages) {
     return {pages.empty() ? nullptr : pages.data(), 0, BELTRAMI_U64, 0};
   }
@@ -178,7 +218,9 @@ void judge(const Scene& scene, const Room& room) {
   promise(baked.texels == covered + baked.without_source,
           "texels with a source are counted as the mask has them");
   promise(std::isfinite(baked.old_texels) && baked.old_texels >= 0, "a density is a number");
-  const bool turned = scene.job.pixels == BELTRAMI_PIXELS_NORMALS && scene.images.channels >= 3;
+  // A sky's share has no texel, and a normal's parts are those of another frame.
+  const bool turned = scene.job.pixels == BELTRAMI_PIXELS_OCCLUSION ||
+                      (scene.job.pixels == BELTRAMI_PIXELS_NORMALS && scene.images.channels >= 3);
   const std::int32_t type = scene.images.type;
   // A unit of whole numbers, and the rounding of single precision in and out of linear light.
   const double rounding = type == BELTRAMI_U16 ? 16 : 1;

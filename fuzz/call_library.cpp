@@ -55,6 +55,37 @@ struct Input {
       edge_paint = array(data, 2, 1, true, 0);
     }
     stop = data.ConsumeIntegralInRange(0, 30) == 0;
+    if (data.ConsumeBool()) be_a_sheet(data);
+  }
+
+  /// A sheet of two squares, or of eight triangles in a square: a disk, which arrays of any numbers
+  /// hardly ever are.
+  void be_a_sheet(Provider& data) {
+    const std::uint64_t columns = 2, rows = data.ConsumeIntegralInRange(1u, 2u);
+    vertices = (columns + 1) * (rows + 1);
+    faces = 2 * columns * rows;
+    std::vector<double> places;
+    std::vector<std::uint32_t> corners;
+    for (std::uint64_t v = 0; v < vertices; ++v) {
+      const double height = data.ConsumeIntegralInRange(-2, 2);
+      places.insert(places.end(), {double(v % (columns + 1)), double(v / (columns + 1)), height});
+    }
+    for (std::uint64_t q = 0; q < columns * rows; ++q) {
+      const auto a = static_cast<std::uint32_t>(q + q / columns), b = a + 1;
+      const auto c = static_cast<std::uint32_t>(a + columns + 1), d = c + 1;
+      corners.insert(corners.end(), {a, b, d, a, d, c});
+    }
+    const auto items = [&](const auto& numbers, std::size_t width, bool real) {
+      return array_of(data, numbers.size() / width, width, real,
+                      [&](std::size_t i, std::size_t k) { return numbers[i * width + k]; });
+    };
+    positions = items(places, 3, true);
+    indices = items(corners, 3, false);
+    uvs = items(std::vector<double>(6 * faces, 0.5), 2, true);
+    for (Array* given :
+         {&labels, &densities, &seams, &pins, &pin_uvs, &paint, &edges, &edge_paint}) {
+      *given = {};
+    }
   }
 
   beltrami_surface surface(Provider& data) const {
@@ -140,7 +171,13 @@ class Memory {
 class Host {
  public:
   explicit Host(Provider& data) : data_(data), input_(data) {
-    const beltrami_allocator allocator = memory_.allocator();
+    beltrami_allocator allocator = memory_.allocator();
+    if (data.ConsumeIntegralInRange(0, 31) == 0) {
+      allocator.reserved = 1;
+      promise(beltrami_create_with(&allocator, &context_) == BELTRAMI_E_INVALID_ARGUMENT,
+              "what is reserved is 0");
+      allocator.reserved = 0;
+    }
     promise(beltrami_create_with(&allocator, &context_) == BELTRAMI_OK, "a context is made");
     // Small pages and no search, so that there are many runs; calls may set them otherwise.
     beltrami_set_int(context_, BELTRAMI_OPTION_RESOLUTION, 16);
@@ -272,6 +309,7 @@ class Host {
     std::uint64_t bytes = 0;
     judged(context, beltrami_estimate_memory(context, &bytes));
     beltrami_get_atlas(context, nullptr);
+    beltrami_get_option(context, BELTRAMI_OPTION_CUT, nullptr);
   }
 
   /// `call` writes `items` of `width` numbers, real ones or whole ones.

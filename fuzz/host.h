@@ -87,10 +87,14 @@ inline void store(char* at, std::int32_t type, double number) {
   if (type == BELTRAMI_U64) put(static_cast<std::uint64_t>(number));
 }
 
+/// Bytes from an item to the next that no memory has.
+inline constexpr std::uint64_t kWildStride = std::uint64_t{1} << 60;
+
 /// Of a wide or a narrow type, packed or with bytes between items; now and then of a type that is
-/// none. Real numbers, or whole ones up to `limit`.
-inline Array array(Provider& data, std::size_t items, std::size_t width, bool real,
-                   std::uint32_t limit) {
+/// none, or of a stride that cannot be. `number` says what item i has at place k of its width.
+template <class Number>
+Array array_of(Provider& data, std::size_t items, std::size_t width, bool real,
+               const Number& number) {
   Array out;
   const bool wide = data.ConsumeBool();
   const std::int32_t type =
@@ -102,16 +106,35 @@ inline Array array(Provider& data, std::size_t items, std::size_t width, bool re
   out.bytes.resize((items - 1) * stride + width * size);
   for (std::size_t i = 0; i < items; ++i) {
     for (std::size_t k = 0; k < width; ++k) {
-      const double number =
-          real ? coordinate(data) : data.ConsumeIntegralInRange<std::uint32_t>(0, limit);
-      store(&out.bytes[i * stride + k * size], type, number);
+      store(&out.bytes[i * stride + k * size], type, static_cast<double>(number(i, k)));
     }
   }
   out.buffer = {out.bytes.data(), gap == 0 && wide ? 0 : stride, type, 0};
-  if (data.ConsumeIntegralInRange(0, 60) == 0) out.buffer.type = data.ConsumeIntegral<int8_t>();
+  switch (data.ConsumeIntegralInRange(0, 60)) {
+    case 0:
+      out.buffer.type = data.ConsumeIntegral<int8_t>();
+      break;
+    case 1:
+      out.buffer.reserved = 1;
+      break;
+    case 2:
+      out.buffer.stride = data.ConsumeBool() ? 1 : kWildStride;
+      break;
+    default:
+      break;
+  }
   // A greater type or stride would reach beyond the array: that is the host's word, not checked.
   if (is_wide(out.buffer.type) && !wide) out.buffer.type = type;
   return out;
+}
+
+/// Of real numbers, or whole ones up to `limit`.
+inline Array array(Provider& data, std::size_t items, std::size_t width, bool real,
+                   std::uint32_t limit) {
+  return array_of(data, items, width, real, [&](std::size_t, std::size_t) -> double {
+    if (real) return coordinate(data);
+    return data.ConsumeIntegralInRange<std::uint32_t>(0, limit);
+  });
 }
 
 /// A view of packed numbers.
