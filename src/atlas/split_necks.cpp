@@ -340,25 +340,37 @@ class Splitter {
     return found;
   }
 
+  /// A split that is tried.
+  struct Trial {
+    Candidate candidate;
+    std::vector<Piece> parts = {};
+    double utilisation = 0, net = 0;
+  };
+
+  /// The first of these that make parts, without what comes of them.
+  std::vector<Trial> trials_of(const std::vector<Candidate>& candidates) {
+    std::vector<Trial> trials;
+    for (auto next = candidates.begin(); next != candidates.end() && size_of(trials) < kTries;) {
+      const Index first = size_of(trials);
+      while (next != candidates.end() && size_of(trials) < kTries) trials.push_back({*next++});
+      parallel_for(work_, size_of(trials) - first, 1, [&](std::int64_t t, std::int64_t) {
+        Trial& trial = trials[first + t];
+        const Piece& piece = pieces_[trial.candidate.piece];
+        trial.parts = parts_of(piece, piece.necks[trial.candidate.neck]);
+      });
+      for (const Trial& trial : trials) {
+        if (!trial.parts.empty()) continue;
+        pieces_[trial.candidate.piece].is_used[trial.candidate.neck] = true;
+      }
+      std::erase_if(trials, [](const Trial& trial) { return trial.parts.empty(); });
+    }
+    return trials;
+  }
+
   /// Splits one piece more, whatever that gains: the best of those that promise most. Returns the
   /// utilisation then; none where there is nothing to split.
   std::optional<double> split_best(double cost) {
-    struct Trial {
-      Candidate candidate;
-      std::vector<Piece> parts;
-      double utilisation = 0, net = 0;
-    };
-    std::vector<Trial> trials;
-    for (const Candidate& candidate : candidates(cost)) {
-      Piece& piece = pieces_[candidate.piece];
-      std::vector<Piece> parts = parts_of(piece, piece.necks[candidate.neck]);
-      if (parts.empty()) {
-        piece.is_used[candidate.neck] = true;
-      } else {
-        trials.push_back({candidate, std::move(parts)});
-      }
-      if (size_of(trials) == kTries) break;
-    }
+    std::vector<Trial> trials = trials_of(candidates(cost));
     if (trials.empty()) return std::nullopt;
     parallel_for(work_, size_of(trials), 1, [&](std::int64_t t, std::int64_t) {
       Trial& trial = trials[t];
