@@ -153,8 +153,8 @@ bool split_for_pages(const AtlasInput& input, const Admitted& admitted, int expo
   if (!may_split(input, admitted, options)) return false;
   const std::vector<Index> which =
       larger_than_page(mapped.charts, scaled, pack_options(options, exponent));
-  return !which.empty() && split_charts(admitted, options.admit.polygons, which, options.chart,
-                                        work.untimed(), mapped.charts, mapped.maps);
+  return !which.empty() && split_in_place(admitted, options.admit.polygons, which, work.untimed(),
+                                          mapped.charts, mapped.maps);
 }
 
 /// Splits the charts that are sound, but not in the numbers of the places that they were given.

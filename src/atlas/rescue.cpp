@@ -102,6 +102,43 @@ EdgeMarks marks_between_halves(const DiskMesh& mesh, const EdgeMarks& locked, co
   return marks;
 }
 
+/// What some charts are split into, with the maps that they had.
+struct Halves {
+  std::vector<bool> goes;  // per chart
+  std::vector<AtlasChart> charts = {};
+  std::vector<MappedChart> maps = {};
+};
+
+Halves halves_of(const Admitted& admitted, const PolygonParts& polygons,
+                 const std::vector<Index>& which, const std::vector<AtlasChart>& charts,
+                 const std::vector<MappedChart>& maps, const Work& work) {
+  Halves halves{std::vector<bool>(charts.size(), false)};
+  for (const Index c : which) {
+    if (charts[c].real_faces < 2) continue;
+    const EdgeMarks locked = locked_in(admitted, polygons, charts[c]);
+    const EdgeMarks marks = marks_between_halves(charts[c].chart.mesh, locked, work);
+    std::vector<ChartPart> own = parts_along(charts[c], maps[c], marks, work);
+    halves.goes[c] = !own.empty();
+    for (ChartPart& part : own) {
+      halves.charts.push_back(std::move(part.chart));
+      halves.maps.push_back(std::move(part.map));
+    }
+  }
+  return halves;
+}
+
+void replace(const Admitted& admitted, Halves halves, std::vector<AtlasChart>& charts,
+             std::vector<MappedChart>& maps) {
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    if (halves.goes[c]) continue;
+    halves.charts.push_back(std::move(charts[c]));
+    halves.maps.push_back(std::move(maps[c]));
+  }
+  charts = std::move(halves.charts);
+  maps = std::move(halves.maps);
+  sort_by_first_face(admitted, charts, maps);
+}
+
 }  // namespace
 
 double beyond_reason(const std::optional<SeamTarget>& target) {
@@ -136,33 +173,19 @@ void sort_by_first_face(const Admitted& admitted, std::vector<AtlasChart>& chart
 bool split_charts(const Admitted& admitted, const PolygonParts& polygons,
                   const std::vector<Index>& which, const ChartOptions& options, const Work& work,
                   std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps) {
-  std::vector<AtlasChart> parts;
-  std::vector<bool> goes(charts.size(), false);
-  for (const Index c : which) {
-    if (charts[c].real_faces < 2) continue;
-    const EdgeMarks locked = locked_in(admitted, polygons, charts[c]);
-    const EdgeMarks marks = marks_between_halves(charts[c].chart.mesh, locked, work);
-    const MappedChart nowhere{
-        .uvs = std::vector<Vec2>(charts[c].chart.mesh.positions.size(), Vec2::Zero())};
-    std::vector<ChartPart> own = parts_along(charts[c], nowhere, marks, work);
-    if (own.empty()) continue;
-    goes[c] = true;
-    for (ChartPart& part : own) parts.push_back(std::move(part.chart));
-  }
-  if (parts.empty()) return false;
-  std::vector<MappedChart> mapped = map_charts(parts, {}, options, work);
-  std::vector<AtlasChart> kept;
-  std::vector<MappedChart> kept_maps;
-  for (std::size_t c = 0; c < charts.size(); ++c) {
-    if (goes[c]) continue;
-    kept.push_back(std::move(charts[c]));
-    kept_maps.push_back(std::move(maps[c]));
-  }
-  std::move(parts.begin(), parts.end(), std::back_inserter(kept));
-  std::move(mapped.begin(), mapped.end(), std::back_inserter(kept_maps));
-  charts.swap(kept);
-  maps.swap(kept_maps);
-  sort_by_first_face(admitted, charts, maps);
+  Halves halves = halves_of(admitted, polygons, which, charts, maps, work);
+  if (halves.charts.empty()) return false;
+  halves.maps = map_charts(halves.charts, {}, options, work);
+  replace(admitted, std::move(halves), charts, maps);
+  return true;
+}
+
+bool split_in_place(const Admitted& admitted, const PolygonParts& polygons,
+                    const std::vector<Index>& which, const Work& work,
+                    std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps) {
+  Halves halves = halves_of(admitted, polygons, which, charts, maps, work);
+  if (halves.charts.empty()) return false;
+  replace(admitted, std::move(halves), charts, maps);
   return true;
 }
 

@@ -29,7 +29,12 @@ bool split_charts(const Admitted& admitted, const PolygonParts& polygons,
                   const std::vector<Index>& which, const ChartOptions& options, const Work& work,
                   std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps);
 
-/// The same for all charts that are hopeless above `most`.
+/// The same, but the parts keep the maps that they have: a half by itself may end in a worse one.
+bool split_in_place(const Admitted& admitted, const PolygonParts& polygons,
+                    const std::vector<Index>& which, const Work& work,
+                    std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps);
+
+/// Those of split_charts for all charts that are hopeless above `most`.
 bool split_hopeless(const Admitted& admitted, const PolygonParts& polygons, double most,
                     const ChartOptions& options, const Work& work, std::vector<AtlasChart>& charts,
                     std::vector<MappedChart>& maps);

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
-#include <optional>
+#include <string>
+#include <utility>
 
 #include "base/error.h"
 
@@ -31,6 +32,18 @@ std::vector<Group> groups_of(std::span<const PackChart> charts) {
   std::vector<Group> groups;
   for (auto& [number, group] : by_number) groups.push_back(std::move(group));
   return groups;
+}
+
+/// Each by itself: an error counts charts within their group.
+void pack_each(const PackOptions& options, const PackGroup& pack, std::vector<Group>& groups) {
+  for (Group& group : groups) {
+    try {
+      group.packing = pack(group.charts, options);
+    } catch (const Error& error) {
+      throw Error(error.fault(), std::string("of the charts of one label, ") + error.what(),
+                  error.element());
+    }
+  }
 }
 
 /// Packs all groups at one density, but for those that are packed at it. Whether they fit.
@@ -79,7 +92,7 @@ bool has_groups(std::span<const PackChart> charts) {
 Packing pack_groups(std::span<const PackChart> charts, const PackOptions& options,
                     const PackGroup& pack) {
   std::vector<Group> groups = groups_of(charts);
-  for (Group& group : groups) group.packing = pack(group.charts, options);
+  pack_each(options, pack, groups);
   if (options.texels_per_unit > 0) return joined(groups, charts.size());
   double density = groups.front().packing.texels_per_unit;
   for (const Group& group : groups) density = std::min(density, group.packing.texels_per_unit);

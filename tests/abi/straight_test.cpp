@@ -122,7 +122,8 @@ using Settings = std::vector<std::pair<std::int32_t, double>>;
 Atlas unwrap(const beltrami_surface& surface, const Settings& settings) {
   const Context context = create();
   for (const auto& [key, value] : settings) {
-    const bool is_real = key == BELTRAMI_OPTION_MARGIN || key == BELTRAMI_OPTION_TARGET_ENERGY;
+    const bool is_real = key == BELTRAMI_OPTION_MARGIN || key == BELTRAMI_OPTION_TARGET_ENERGY ||
+                         key == BELTRAMI_OPTION_TEXELS_PER_UNIT;
     const beltrami_status set =
         is_real ? beltrami_set_float(context.get(), key, value)
                 : beltrami_set_int(context.get(), key, static_cast<std::int64_t>(value));
@@ -197,6 +198,26 @@ TEST_P(StraightGrids, HaveRowsAndColumnsToTheBit) {
 INSTANTIATE_TEST_SUITE_P(Sheets, StraightGrids,
                          testing::Values(
                              &leg, &cable, &curtain, +[] { return road(false); }));
+
+TEST(StraightParts, KeepTheMapThatTheyHad) {
+  const Sheet mesh = road(false);
+  Settings settings = {{BELTRAMI_OPTION_CUT, BELTRAMI_CUT_MINIMAL},
+                       {BELTRAMI_OPTION_RECTIFY, BELTRAMI_RECTIFY_GRIDS},
+                       {BELTRAMI_OPTION_RESOLUTION, 256}};
+  const Atlas whole = unwrap(mesh.view(), settings);
+  settings.emplace_back(BELTRAMI_OPTION_TEXELS_PER_UNIT, 60);  // twice as long as a page
+  const Atlas parts = unwrap(mesh.view(), settings);
+  ASSERT_EQ(parts.status, BELTRAMI_OK) << parts.message;
+  EXPECT_TRUE(parts.injective);
+  EXPECT_NEAR(parts.energy, whole.energy, 1e-9);
+  double longest = 0;
+  for (std::size_t c = 0; c < parts.uvs.size(); ++c) {
+    const Uv &a = parts.uvs[c], &b = parts.uvs[c % 4 == 3 ? c - 3 : c + 1];
+    EXPECT_LT(std::min(std::abs(a[0] - b[0]), std::abs(a[1] - b[1])), 1e-9) << c;
+    longest = std::max({longest, std::abs(a[0] - b[0]), std::abs(a[1] - b[1])});
+  }
+  EXPECT_GT(longest * mesh.columns, 1.5) << "there is more than one part";
+}
 
 TEST(StraightCharts, OfNoGridStayFree) {
   Sheet bent = road(true);
