@@ -41,7 +41,7 @@ class BeltramiConan(ConanFile):
             raise ConanInvalidConfiguration("Microsoft's compiler has not been tried: build with Clang")
 
     def build_requirements(self):
-        self.tool_requires("cmake/[>=3.25 <4]")
+        self.tool_requires("cmake/[>=3.22 <4]")
 
     def source(self):
         get(self, **self.conan_data["sources"][self.version], strip_root=True)

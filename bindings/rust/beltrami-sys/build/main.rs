@@ -141,7 +141,7 @@ fn fail(reason: impl Display) -> ! {
          - install beltrami so that pkg-config finds it ({} <= version < {});\n\
          - set BELTRAMI_LIB_DIR to the folder of its library (and BELTRAMI_INCLUDE_DIR to that of \
          its header, BELTRAMI_STATIC=1 for the static library);\n\
-         - have the packaged sources compiled: that takes CMake 3.25, a C++20 compiler, and the \
+         - have the packaged sources compiled: that takes CMake 3.22, a C++20 compiler, and the \
          development files of Eigen 3.4 and CGAL 5.5 (Debian: g++ cmake libeigen3-dev \
          libcgal-dev). The feature `vendored` does so whatever is installed.\n",
         VERSIONS.start, VERSIONS.end
