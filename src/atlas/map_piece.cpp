@@ -60,6 +60,10 @@ constexpr double kNearlyMet = 1.1;
 /// if coarse ones used more; which aims at so much of it, and at no more than so many times it.
 constexpr double kUnused = 0.96, kUsed = 0.9, kAim = 0.975, kMostAim = 2;
 
+/// Splits that are tried to bring a piece to its target which the search has missed. After the
+/// first ones it is given up where those that are left would all have to be better than the best.
+constexpr int kMostSplits = 8, kFirstSplits = 4;
+
 /// Throws Error PINS with the first pin that is proven not to go with those before it.
 void require_no_conflict(const std::vector<AtlasChart>& charts, const AssignedPins& pins,
                          const std::vector<Pin>& all) {
@@ -311,6 +315,49 @@ void rescue(const Task& task, const Work& work, std::vector<StageStatistics>& st
   });
 }
 
+/// Marks the edges between charts as seams, too.
+void mark_between_charts(const SurfacePiece& piece, OpenedSurface& opened) {
+  std::vector<Index> chart_of_face(piece.face.size(), kNone);
+  for (Index c = 0; c < size_of(opened.charts); ++c) {
+    for (const Index face : opened.charts[c].chart.input_face) {
+      const auto found = std::lower_bound(piece.face.begin(), piece.face.end(), face);
+      chart_of_face[found - piece.face.begin()] = c;
+    }
+  }
+  for (Index h = 0; h < size_of(opened.seams); ++h) {
+    const Index twin = piece.surface.twin[h];
+    if (twin != kNone && chart_of_face[h / 3] != chart_of_face[twin / 3]) opened.seams[h] = true;
+  }
+}
+
+/// Splits the charts that exceed the target by most, one after the other, until the piece meets it:
+/// the search finds no seam where all edges end at borders, as in a few long triangles. A piece
+/// that so many splits do not bring there stays as it is.
+void split_to_target(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
+                     const Work& work, std::vector<StageStatistics>& stages, Mapped& mapped) {
+  const AtlasOptions& options = task.options;
+  if (!promises(options.chart)) return;  // a baseline is shown as it is
+  run_stage("flatten", work, stages, [&](StageStatistics&, const Work& inner) {
+    Mapped trial = mapped;
+    double best = 0;  // what a split has taken from the excess
+    for (int split = 1; split <= kMostSplits && misses(trial, target); ++split) {
+      const double before = excess_of(trial.energy, target);
+      if (inner.out_of_time() ||
+          !split_worst(task.admitted, options.admit.polygons, target.energy, options.chart,
+                       inner.untimed(), trial.opened.charts, trial.maps)) {
+        return;
+      }
+      measure(inner, trial);
+      const double excess = excess_of(trial.energy, target);
+      best = std::max(best, before - excess);
+      if (split >= kFirstSplits && excess - 1 > (kMostSplits - split) * best) return;
+    }
+    if (misses(trial, target)) return;
+    mark_between_charts(piece, trial.opened);
+    mapped = std::move(trial);
+  });
+}
+
 /// What is mapped along seams that were searched for, or else along creases, where that leaves
 /// faces flat and the seams are not much longer.
 Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
@@ -322,6 +369,8 @@ Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTar
   const bool missed = misses(searched, target);
   if (is_asked_of_whole(task.input, task.options) || work.out_of_time()) return searched;
   if (!missed && (target.flat_seams == 0 || is_flat(searched))) return searched;
+  if (missed)
+    split_to_target(task, piece, target, work.part(kSearchedAll, kSearchedAll), stages, searched);
   const std::vector<Index>& vertex = task.admitted.input_vertex;
   const double times = std::max(target.flat_seams, missed ? kUnfolded : 0);
   const double most = times * seam_length(searched.opened.charts, vertex);

@@ -139,6 +139,36 @@ void replace(const Admitted& admitted, Halves halves, std::vector<AtlasChart>& c
   sort_by_first_face(admitted, charts, maps);
 }
 
+bool is_sound(const MappedChart& map) {
+  return !map.error && map.outcome <= Outcome::kNotConverged;
+}
+
+/// The mean energy of each chart.
+std::vector<double> energies_of(const std::vector<AtlasChart>& charts,
+                                const std::vector<MappedChart>& maps, const Work& work) {
+  std::vector<ChartInfo> info(charts.size());
+  measure_charts(charts, maps, 1, info, work);
+  std::vector<double> energies;
+  for (const ChartInfo& one : info) energies.push_back(one.symmetric_dirichlet);
+  return energies;
+}
+
+/// The chart of several faces that brings most energy beyond that which is given for all, or kNone.
+Index farthest_beyond(double energy, const std::vector<AtlasChart>& charts,
+                      const std::vector<MappedChart>& maps, const Work& work) {
+  std::vector<ChartInfo> info(charts.size());
+  measure_charts(charts, maps, 1, info, work);
+  Index worst = kNone;
+  double most = 0;
+  for (Index c = 0; c < size_of(charts); ++c) {
+    const double excess = info[c].area * (info[c].symmetric_dirichlet - energy);
+    if (charts[c].real_faces < 2 || !(excess > most)) continue;
+    most = excess;
+    worst = c;
+  }
+  return worst;
+}
+
 }  // namespace
 
 double beyond_reason(const std::optional<SeamTarget>& target) {
@@ -146,10 +176,7 @@ double beyond_reason(const std::optional<SeamTarget>& target) {
 }
 
 bool is_hopeless(const AtlasChart& chart, const MappedChart& map, double most, const Work& work) {
-  if (map.error || map.outcome > Outcome::kNotConverged) return true;
-  std::vector<ChartInfo> info(1);
-  const AtlasEnergy energy = measure_charts({chart}, {map}, 1, info, work);
-  return energy.symmetric_dirichlet > most;
+  return !is_sound(map) || energies_of({chart}, {map}, work).front() > most;
 }
 
 void sort_by_first_face(const Admitted& admitted, std::vector<AtlasChart>& charts,
@@ -185,6 +212,24 @@ bool split_in_place(const Admitted& admitted, const PolygonParts& polygons,
                     std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps) {
   Halves halves = halves_of(admitted, polygons, which, charts, maps, work);
   if (halves.charts.empty()) return false;
+  replace(admitted, std::move(halves), charts, maps);
+  return true;
+}
+
+bool split_worst(const Admitted& admitted, const PolygonParts& polygons, double energy,
+                 const ChartOptions& options, const Work& work, std::vector<AtlasChart>& charts,
+                 std::vector<MappedChart>& maps) {
+  const Index worst = farthest_beyond(energy, charts, maps, work);
+  if (worst == kNone) return false;
+  Halves halves = halves_of(admitted, polygons, {worst}, charts, maps, work);
+  if (halves.charts.empty()) return false;
+  std::vector<MappedChart> anew = map_charts(halves.charts, {}, options, work);
+  const std::vector<double> before = energies_of(halves.charts, halves.maps, work);
+  const std::vector<double> after = energies_of(halves.charts, anew, work);
+  for (std::size_t c = 0; c < anew.size(); ++c) {
+    const bool is_kept = is_sound(maps[worst]) && (!is_sound(anew[c]) || before[c] < after[c]);
+    if (!is_kept) halves.maps[c] = std::move(anew[c]);
+  }
   replace(admitted, std::move(halves), charts, maps);
   return true;
 }

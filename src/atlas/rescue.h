@@ -34,6 +34,13 @@ bool split_in_place(const Admitted& admitted, const PolygonParts& polygons,
                     const std::vector<Index>& which, const Work& work,
                     std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps);
 
+/// Splits the chart that brings most energy beyond the mean that is asked for. Each half has the
+/// map that it had or one of its own, whichever has less energy. Returns whether there is such a
+/// chart.
+bool split_worst(const Admitted& admitted, const PolygonParts& polygons, double energy,
+                 const ChartOptions& options, const Work& work, std::vector<AtlasChart>& charts,
+                 std::vector<MappedChart>& maps);
+
 /// Those of split_charts for all charts that are hopeless above `most`.
 bool split_hopeless(const Admitted& admitted, const PolygonParts& polygons, double most,
                     const ChartOptions& options, const Work& work, std::vector<AtlasChart>& charts,

@@ -125,6 +125,48 @@ TEST(UnwrapToATarget, ATetrahedronIsOpenedForAnyEnergy) {
   }
 }
 
+// The search follows edges, of which none ends inside these: walls of a house and of a rail,
+// folded.
+TEST(UnwrapToATarget, AFewLongTrianglesMeetItInParts) {
+  const TriangleList wall{{{0, 1.5284, 0},
+                           {0, 1.5209, .0069},
+                           {0, 0, 0},
+                           {0, .0075, .0069},
+                           {0, .0075, 1.3274},
+                           {-.0069, .0075, .0069},
+                           {-.0104, 1.5209, .0069},
+                           {-.0104, .0075, .0069},
+                           {-.0035, .0075, .0069},
+                           {-.0035, .0075, 1.3274},
+                           {-.0069, .0075, 1.3274},
+                           {-.0104, .0075, 1.3274}},
+                          {{0, 1, 2},
+                           {2, 1, 3},
+                           {2, 3, 4},
+                           {5, 6, 7},
+                           {3, 8, 9},
+                           {3, 9, 4},
+                           {9, 8, 5},
+                           {9, 5, 10},
+                           {10, 5, 7},
+                           {10, 7, 11}}};
+  const TriangleList rail{
+      {{0, .02, 0},
+       {-.0359, .0141, .6032},
+       {0, .02, .5532},
+       {1.0897, 0, 0},
+       {0, 0, 0},
+       {0, 0, .5532},
+       {1.0897, .02, .5532},
+       {-.0359, .0141, -.05}},
+      {{0, 1, 2}, {3, 0, 4}, {4, 2, 5}, {6, 2, 1}, {0, 7, 1}, {5, 2, 6}, {4, 0, 2}}};
+  for (const TriangleList& mesh : {wall, rail}) {
+    const Atlas atlas = unwrapped(mesh, aiming_at(2.05));
+    atlases::expect_sound(mesh, atlas);
+    EXPECT_LE(atlas.energy.symmetric_dirichlet, 2.05 + 1e-6);
+  }
+}
+
 TEST(UnwrapToATarget, GivenCutsStayCut) {
   const TriangleList mesh = disks::refined(meshes::cube(), 2);
   AtlasInput input{mesh.positions, mesh.faces};
