@@ -15,6 +15,8 @@ namespace {
 /// as much.
 constexpr double kStepDown = 0.99;
 constexpr int kMostSteps = 30;
+/// Tiles that UDIM numbers by four digits, of a hundred rows.
+constexpr int kMostTiles = 1000;
 
 struct Group {
   std::vector<std::size_t> members;  // of all charts
@@ -62,6 +64,14 @@ bool pack_at(double density, PackOptions options, const PackGroup& pack,
   return true;
 }
 
+/// So many pages have numbers.
+void require_numbers(std::int64_t pages, std::size_t groups) {
+  if (pages <= kMostTiles) return;
+  throw Error(Fault::kInvalidArgument,
+              "there are more than 1000 pages, of " + std::to_string(groups) +
+                  " labels that share none: take labels of which there are fewer");
+}
+
 /// The pages of all groups one behind another.
 Packing joined(const std::vector<Group>& groups, std::size_t charts) {
   Packing all;
@@ -78,6 +88,7 @@ Packing joined(const std::vector<Group>& groups, std::size_t charts) {
     const std::vector<double>& shares = group.packing.page_utilisation;
     all.page_utilisation.insert(all.page_utilisation.end(), shares.begin(), shares.end());
   }
+  require_numbers(all.pages, groups.size());
   all.utilisation /= all.pages;
   return all;
 }
@@ -92,6 +103,7 @@ bool has_groups(std::span<const PackChart> charts) {
 Packing pack_groups(std::span<const PackChart> charts, const PackOptions& options,
                     const PackGroup& pack) {
   std::vector<Group> groups = groups_of(charts);
+  require_numbers(static_cast<std::int64_t>(groups.size()), groups.size());
   pack_each(options, pack, groups);
   if (options.texels_per_unit > 0) return joined(groups, charts.size());
   double density = groups.front().packing.texels_per_unit;

@@ -262,6 +262,10 @@ TEST(Pack, GroupsShareNoPageAndHaveOneDensity) {
   EXPECT_EQ(denser.texels_per_unit, options.texels_per_unit);
   options.max_pages = denser.pages;
   expect_sound(charts, options, denser);
+  std::vector<PackChart> many(1001, rectangle(1, 1));
+  for (std::size_t c = 0; c < many.size(); ++c) many[c].group = c;
+  options.texels_per_unit = 1;
+  EXPECT_THROW(pack_charts(many, options, Work()), Error) << "UDIM has a thousand";
 }
 
 TEST(Pack, ChartsThatAreKeptStay) {
