@@ -88,7 +88,7 @@ inline void store(char* at, std::int32_t type, double number) {
 }
 
 /// Bytes from an item to the next that no memory has.
-inline constexpr std::uint64_t kWildStride = std::uint64_t{1} << 60;
+inline constexpr std::uint64_t kWildStride = std::uint64_t{1} << 63;
 
 /// Of a wide or a narrow type, packed or with bytes between items; now and then of a type that is
 /// none, or of a stride that cannot be. `number` says what item i has at place k of its width.

@@ -209,7 +209,7 @@ void judge_output(const std::vector<std::string>& words, const End& end) {
   if (output.starts_with("-") || !fs::is_regular_file(output)) return;
   // What shares texels on purpose lies on itself, other numbers than the UVs that are read may be
   // written, and other pages than the first are beside [0,1]^2.
-  for (const char* word : {"--st", "--sh", "--uv", "--pack", "--max-p", "--tex", "-"}) {
+  for (const char* word : {"--st", "--sh", "--uv", "--pack", "--max-p", "--tex", "--label-", "-"}) {
     if (word == std::string("-") ? has(words, "-h") : has(words, word)) return;
   }
   std::vector<std::string> asked = {"check", output, "--mirrored"};

@@ -358,6 +358,30 @@ void split_to_target(const Task& task, const SurfacePiece& piece, const SeamTarg
   });
 }
 
+/// The same search with the holes of a piece open: where many are filled, the patches may bend what
+/// is around them so that no seam brings it to the target.
+std::optional<Mapped> map_with_open_holes(const Task& task, const SurfacePiece& piece,
+                                          const SeamTarget& target, const Work& work,
+                                          std::vector<StageStatistics>& stages) {
+  const SeamHints& hints = piece.hints;
+  const bool is_painted = !hints.vertex_paint.empty() || !hints.edge_paint.empty();
+  if (piece.surface.face_count() == piece.real_faces || is_painted) return std::nullopt;
+  SurfacePiece open = parted_along(piece, {}, 0, work.aside());
+  open.hints.hard_angle = hints.hard_angle;
+  if (!hints.labels.empty()) {
+    open.hints.labels.assign(hints.labels.begin(), hints.labels.begin() + piece.real_faces);
+  }
+  Mapped mapped = map_searched(task, open, target, work, stages);
+  if (misses(mapped, target)) return std::nullopt;
+  EdgeMarks seams(piece.surface.twin.size(), false);
+  for (Index h = 0; h < 3 * piece.real_faces; ++h) {
+    if (mapped.opened.seams[h]) mark_edge(piece.surface, h, seams);
+  }
+  mapped.opened.seams = std::move(seams);
+  mapped.opened.is_parted = true;
+  return mapped;
+}
+
 /// What is mapped along seams that were searched for, or else along creases, where that leaves
 /// faces flat and the seams are not much longer.
 Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
@@ -369,8 +393,15 @@ Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTar
   const bool missed = misses(searched, target);
   if (is_asked_of_whole(task.input, task.options) || work.out_of_time()) return searched;
   if (!missed && (target.flat_seams == 0 || is_flat(searched))) return searched;
-  if (missed)
-    split_to_target(task, piece, target, work.part(kSearchedAll, kSearchedAll), stages, searched);
+  if (missed) {
+    const Work aside = work.part(kSearchedAll, kSearchedAll);
+    std::optional<Mapped> open = map_with_open_holes(task, piece, target, aside, stages);
+    if (open) {
+      searched = *std::move(open);
+    } else {
+      split_to_target(task, piece, target, aside, stages, searched);
+    }
+  }
   const std::vector<Index>& vertex = task.admitted.input_vertex;
   const double times = std::max(target.flat_seams, missed ? kUnfolded : 0);
   const double most = times * seam_length(searched.opened.charts, vertex);
