@@ -54,7 +54,7 @@ constexpr double kMoreThanMissed = 1.1;
 /// but at no less of the excess over 2: what is left then are wrinkles that no cut takes away.
 constexpr double kLeastAim = 0.3;
 /// Of the excess over 2 that a search aimed at: with more its coarse maps tell that it can do no
-/// more, and with less it has missed by a hair.
+/// more, and its fine ones that open holes are worth a try; with less it has missed by a hair.
 constexpr double kNearlyMet = 1.1;
 /// Of the excess asked for, fine maps that use no more are worth a further try with shorter seams
 /// if coarse ones used more; which aims at so much of it, and at no more than so many times it.
@@ -184,7 +184,35 @@ bool is_better(const Mapped& a, const Mapped& b, const SeamTarget& target,
   return seam_length(a.opened.charts, vertex) < seam_length(b.opened.charts, vertex);
 }
 
-/// A few tries at the target, and a short cut where all of them miss it.
+Mapped map_searched(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
+                    const Work& work, std::vector<StageStatistics>& stages);
+
+/// A search with the holes of a piece open: where many are filled, the patches may bend what
+/// is around them so that no seam brings it to the target.
+std::optional<Mapped> map_with_open_holes(const Task& task, const SurfacePiece& piece,
+                                          const SeamTarget& target, const Work& work,
+                                          std::vector<StageStatistics>& stages) {
+  const SeamHints& hints = piece.hints;
+  const bool is_painted = !hints.vertex_paint.empty() || !hints.edge_paint.empty();
+  if (piece.surface.face_count() == piece.real_faces || is_painted) return std::nullopt;
+  SurfacePiece open = parted_along(piece, {}, 0, work.aside());
+  open.hints.hard_angle = hints.hard_angle;
+  if (!hints.labels.empty()) {
+    open.hints.labels.assign(hints.labels.begin(), hints.labels.begin() + piece.real_faces);
+  }
+  Mapped mapped = map_searched(task, open, target, work, stages);
+  if (misses(mapped, target)) return std::nullopt;
+  EdgeMarks seams(piece.surface.twin.size(), false);
+  for (Index h = 0; h < 3 * piece.real_faces; ++h) {
+    if (mapped.opened.seams[h]) mark_edge(piece.surface, h, seams);
+  }
+  mapped.opened.seams = std::move(seams);
+  mapped.opened.is_parted = true;
+  return mapped;
+}
+
+/// A few tries at the target, the second one with open holes, and a short cut where all of them
+/// miss it.
 Mapped map_searched(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
                     const Work& work, std::vector<StageStatistics>& stages) {
   const SearchEffort effort = effort_for(task, piece, work.aside());
@@ -204,6 +232,11 @@ Mapped map_searched(const Task& task, const SurfacePiece& piece, const SeamTarge
     };
     Mapped mapped = open_and_map_once(task, open, cut, false, work.part(from, to), stages);
     begun = std::move(mapped.opened.search);
+    if (i == 0 && excess_of(mapped.energy, target) > kNearlyMet) {
+      const Work aside = work.part(to, to);
+      std::optional<Mapped> open_holes = map_with_open_holes(task, piece, target, aside, stages);
+      if (open_holes) return *std::move(open_holes);
+    }
     if (misses(mapped, target)) {
       aim = is_reached ? std::nullopt : aimed_lower(target, *aim, mapped);
     } else {
@@ -358,30 +391,6 @@ void split_to_target(const Task& task, const SurfacePiece& piece, const SeamTarg
   });
 }
 
-/// The same search with the holes of a piece open: where many are filled, the patches may bend what
-/// is around them so that no seam brings it to the target.
-std::optional<Mapped> map_with_open_holes(const Task& task, const SurfacePiece& piece,
-                                          const SeamTarget& target, const Work& work,
-                                          std::vector<StageStatistics>& stages) {
-  const SeamHints& hints = piece.hints;
-  const bool is_painted = !hints.vertex_paint.empty() || !hints.edge_paint.empty();
-  if (piece.surface.face_count() == piece.real_faces || is_painted) return std::nullopt;
-  SurfacePiece open = parted_along(piece, {}, 0, work.aside());
-  open.hints.hard_angle = hints.hard_angle;
-  if (!hints.labels.empty()) {
-    open.hints.labels.assign(hints.labels.begin(), hints.labels.begin() + piece.real_faces);
-  }
-  Mapped mapped = map_searched(task, open, target, work, stages);
-  if (misses(mapped, target)) return std::nullopt;
-  EdgeMarks seams(piece.surface.twin.size(), false);
-  for (Index h = 0; h < 3 * piece.real_faces; ++h) {
-    if (mapped.opened.seams[h]) mark_edge(piece.surface, h, seams);
-  }
-  mapped.opened.seams = std::move(seams);
-  mapped.opened.is_parted = true;
-  return mapped;
-}
-
 /// What is mapped along seams that were searched for, or else along creases, where that leaves
 /// faces flat and the seams are not much longer.
 Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
@@ -393,15 +402,8 @@ Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTar
   const bool missed = misses(searched, target);
   if (is_asked_of_whole(task.input, task.options) || work.out_of_time()) return searched;
   if (!missed && (target.flat_seams == 0 || is_flat(searched))) return searched;
-  if (missed) {
-    const Work aside = work.part(kSearchedAll, kSearchedAll);
-    std::optional<Mapped> open = map_with_open_holes(task, piece, target, aside, stages);
-    if (open) {
-      searched = *std::move(open);
-    } else {
-      split_to_target(task, piece, target, aside, stages, searched);
-    }
-  }
+  if (missed)
+    split_to_target(task, piece, target, work.part(kSearchedAll, kSearchedAll), stages, searched);
   const std::vector<Index>& vertex = task.admitted.input_vertex;
   const double times = std::max(target.flat_seams, missed ? kUnfolded : 0);
   const double most = times * seam_length(searched.opened.charts, vertex);
