@@ -16,6 +16,7 @@
 #include "base/vectors.h"
 #include "chart/flattening.h"
 #include "cut/edge_marks.h"
+#include "cut/seam_costs.h"
 #include "cut/seam_target.h"
 #include "cut/search_effort.h"
 #include "cut/search_seams.h"
