@@ -4,6 +4,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -41,9 +42,17 @@ std::string range_of(const Option& option) {
   return plain_number(option.info.minimum) + " to " + plain_number(option.info.maximum);
 }
 
+/// "Turns each chart" for "1 turns each chart": a flag takes no number.
+std::string said_of_flag(const std::string& summary) {
+  if (!summary.starts_with("1 ")) return summary;
+  std::string text = summary.substr(2);
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
 std::string help_text(const Option& option) {
   std::string text = option.info.summary;
-  if (option.is_flag()) return text;
+  if (option.is_flag()) return said_of_flag(text);
   if (option.is_byte_count())
     text += " K, M and G behind the number multiply it by powers of 1024.";
   text += " [";

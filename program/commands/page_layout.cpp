@@ -305,12 +305,26 @@ void measure_density(const std::vector<Chart>& charts, PageLayout& layout) {
   layout.utilisation = uv_area / static_cast<double>(std::max<std::size_t>(layout.tiles.size(), 1));
 }
 
+/// The corners of triangles that have an area in space, or all where none has: what shows nothing
+/// lies anywhere, perhaps across a page, and ties no charts together.
+std::vector<std::uint32_t> shown_corners(const MeshFile& file,
+                                         const std::vector<std::uint32_t>& corners) {
+  const UvMesh mesh = uv_mesh_of(file, corners);
+  std::vector<std::uint32_t> shown;
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    if (!(area_in_space(file, &mesh.vertices[i]) > 0)) continue;
+    shown.insert(shown.end(), {corners[i], corners[i + 1], corners[i + 2]});
+  }
+  return shown.empty() ? corners : shown;
+}
+
 }  // namespace
 
-PageLayout page_layout(const MeshFile& file, const std::vector<std::uint32_t>& corners,
+PageLayout page_layout(const MeshFile& file, const std::vector<std::uint32_t>& all_corners,
                        std::uint64_t resolution, const std::string& labels) {
   PageLayout layout;
   layout.resolution = resolution;
+  const std::vector<std::uint32_t> corners = shown_corners(file, all_corners);
   const UvMesh mesh = uv_mesh_of(file, corners);
   std::uint32_t count = 0;
   const std::vector<std::uint32_t> chart_of_triangle = charts_of(mesh, count);

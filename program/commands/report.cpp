@@ -63,6 +63,9 @@ std::string missed_bounds(const beltrami_atlas& atlas, const Target& target) {
   for (const auto& [is_missed, name] : bounds) {
     if (is_missed) names += (names.empty() ? " by " : " and ") + std::string(name);
   }
+  // Over all it is met then.
+  if (names.empty() && atlas.missed_parts > 0)
+    return atlas.missed_parts == 1 ? " by a part" : " by parts";
   return names;
 }
 

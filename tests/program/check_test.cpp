@@ -16,6 +16,19 @@ namespace {
 
 using Json = nlohmann::json;
 
+// Two charts, and a face on a line of the surface that has a corner in each.
+TEST(Check, FacesWithoutAreaTakeNothingOfTheMargin) {
+  const TemporaryDirectory directory;
+  const std::string in =
+      directory.file("in.obj",
+                     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .2 -1 1\nv .8 0 0\nv .5 0 0\n"
+                     "f 1 2 3 4\nf 1 5 6\nf 1 7 6 2\n");
+  const std::string out = directory.path("out.obj");
+  ASSERT_EQ(run({"unwrap", in, out}).exit_code, 0);
+  const Outcome checked = run({"check", out, "--margin", "2"});
+  EXPECT_EQ(checked.exit_code, 0) << checked.out << checked.err;
+}
+
 TEST(Check, AcceptsAnInjectiveMap) {
   const TemporaryDirectory directory;
   const std::string in = directory.file("in.obj", kSquareWithUvs);
