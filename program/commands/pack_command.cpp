@@ -82,7 +82,7 @@ class PackRun {
     fetch_report();
     for (std::size_t i = 0; i < files_.size(); ++i) fetch_uvs(i);
     report_.label_pages = labels_.taken();
-    judge_mirrored();
+    judge_again();
     for (const PackedFile& mesh : files_) judge_held(mesh);
     return write_files();
   }
@@ -290,23 +290,26 @@ class PackRun {
     set_corner_uvs(mesh.file, corner_uvs, options_.integer(BELTRAMI_OPTION_FLOAT32) != 0);
   }
 
-  /// The verdict with charts that are mirrored as a whole taken for their mirror images: on all
-  /// meshes as one, for a chart of one may lie on that of another.
-  void judge_mirrored() {
+  /// Where the packer's verdict is no: that with charts that are mirrored as a whole taken for
+  /// their mirror images, or with faces left out that have no area in space. On all meshes as one,
+  /// for a chart of one may lie on that of another.
+  void judge_again() {
     if (report_.atlas_certificate->injective != 0 && report_.float32_injective == true) return;
     MeshFile all;
     for (const PackedFile& mesh : files_) append_for_verdict(mesh.file, all);
     beltrami_atlas_certificate found{};
-    const beltrami_status status = check_mirrored(all, found);
+    beltrami_status status = check(all, true, found);
     if (!arguments_.mirrored) {
       if (status == BELTRAMI_OK && found.mirrored_charts > 0) report_.advice = kMirroredAdvice;
-      return;
+      if (!arguments_.keep_scales) return;
+      // The packer was not told which faces have no area in space.
+      status = check(all, false, found);
     }
     report_.status = beltrami_status_name(status);
     report_.atlas_certificate = found;
     for (double& x : all.corner_uvs.values) x = static_cast<double>(static_cast<float>(x));
     beltrami_atlas_certificate single{};
-    report_.float32_injective = check_mirrored(all, single) == BELTRAMI_OK;
+    report_.float32_injective = check(all, arguments_.mirrored, single) == BELTRAMI_OK;
   }
 
   static void append_for_verdict(const MeshFile& file, MeshFile& all) {
@@ -323,12 +326,14 @@ class PackRun {
     for (const std::uint32_t uv : of_corner) all.corner_uvs.of_corner.push_back(uvs + uv);
   }
 
-  beltrami_status check_mirrored(const MeshFile& all, beltrami_atlas_certificate& found) const {
+  beltrami_status check(const MeshFile& all, bool mirrored,
+                        beltrami_atlas_certificate& found) const {
     const SurfaceView view(all);
     const beltrami_surface surface = view.surface();
     found = {};
     found.struct_size = sizeof found;
-    const beltrami_status status = beltrami_check_atlas(&surface, 1, &found, nullptr, 0);
+    const beltrami_status status =
+        beltrami_check_atlas(&surface, mirrored ? 1 : 0, &found, nullptr, 0);
     require_ok(status, "the meshes", "", found.error_element_kind, found.error_element);
     return status;
   }

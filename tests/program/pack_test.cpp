@@ -70,6 +70,19 @@ TEST(Pack, EvensDensitiesOutAndKeepsWhatFacesHave) {
   EXPECT_TRUE(read_image(directory.read("p.png")).has_value());
 }
 
+TEST(Pack, FacesWithoutAreaAreNoFaultWithoutPositionsEither) {
+  const TemporaryDirectory directory;
+  const std::string in = directory.file(
+      "in.obj", kSquares + "v 8 0 0\nv 9 0 0\nv 10 0 0\nvt .5 .5\nf 9/9 10/9 11/9\n");
+  const std::string out = directory.path("out.obj");
+  for (const bool keeps : {false, true}) {
+    std::vector<std::string> arguments = {"pack", in, "--output", out};
+    if (keeps) arguments.emplace_back("--keep-scales");
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  }
+}
+
 TEST(Pack, MaterialsOfOneNameShareTilesAndOthersDoNot) {
   const TemporaryDirectory directory;
   std::string green = kSquares;
