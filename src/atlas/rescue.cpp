@@ -109,14 +109,24 @@ struct Halves {
   std::vector<MappedChart> maps = {};
 };
 
+/// Whether a marked edge is locked, as it is where there was no other way.
+bool divide_locked(const EdgeMarks& marks, const EdgeMarks& locked) {
+  for (std::size_t h = 0; h < locked.size(); ++h) {
+    if (marks[h] && locked[h]) return true;
+  }
+  return false;
+}
+
+/// `whole`: charts that only a seam inside a polygon would split are left out.
 Halves halves_of(const Admitted& admitted, const PolygonParts& polygons,
                  const std::vector<Index>& which, const std::vector<AtlasChart>& charts,
-                 const std::vector<MappedChart>& maps, const Work& work) {
+                 const std::vector<MappedChart>& maps, const Work& work, bool whole = false) {
   Halves halves{std::vector<bool>(charts.size(), false)};
   for (const Index c : which) {
     if (charts[c].real_faces < 2) continue;
     const EdgeMarks locked = locked_in(admitted, polygons, charts[c]);
     const EdgeMarks marks = marks_between_halves(charts[c].chart.mesh, locked, work);
+    if (whole && divide_locked(marks, locked)) continue;
     std::vector<ChartPart> own = parts_along(charts[c], maps[c], marks, work);
     halves.goes[c] = !own.empty();
     for (ChartPart& part : own) {
@@ -221,7 +231,7 @@ bool split_worst(const Admitted& admitted, const PolygonParts& polygons, double 
                  std::vector<MappedChart>& maps) {
   const Index worst = farthest_beyond(energy, charts, maps, work);
   if (worst == kNone) return false;
-  Halves halves = halves_of(admitted, polygons, {worst}, charts, maps, work);
+  Halves halves = halves_of(admitted, polygons, {worst}, charts, maps, work, true);
   if (halves.charts.empty()) return false;
   std::vector<MappedChart> anew = map_charts(halves.charts, {}, options, work);
   const std::vector<double> before = energies_of(halves.charts, halves.maps, work);

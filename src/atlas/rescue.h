@@ -34,9 +34,9 @@ bool split_in_place(const Admitted& admitted, const PolygonParts& polygons,
                     const std::vector<Index>& which, const Work& work,
                     std::vector<AtlasChart>& charts, std::vector<MappedChart>& maps);
 
-/// Splits the chart that brings most energy beyond the mean that is asked for. Each half has the
-/// map that it had or one of its own, whichever has less energy. Returns whether there is such a
-/// chart.
+/// Splits the chart that brings most energy beyond the mean that is asked for, between polygons.
+/// Each half has the map that it had or one of its own, whichever has less energy. Returns whether
+/// there is such a chart, and a way.
 bool split_worst(const Admitted& admitted, const PolygonParts& polygons, double energy,
                  const ChartOptions& options, const Work& work, std::vector<AtlasChart>& charts,
                  std::vector<MappedChart>& maps);
