@@ -188,8 +188,9 @@ bool is_better(const Mapped& a, const Mapped& b, const SeamTarget& target,
 Mapped map_searched(const Task& task, const SurfacePiece& piece, const SeamTarget& target,
                     const Work& work, std::vector<StageStatistics>& stages);
 
-/// A search with the holes of a piece open: where many are filled, the patches may bend what
-/// is around them so that no seam brings it to the target.
+/// A search with the holes of a piece open: where many are filled, the patches may bend what is
+/// around them so that no seam brings it to the target. Nothing where it misses, too, where none is
+/// filled, and where paint would have to be carried over.
 std::optional<Mapped> map_with_open_holes(const Task& task, const SurfacePiece& piece,
                                           const SeamTarget& target, const Work& work,
                                           std::vector<StageStatistics>& stages) {
@@ -403,8 +404,9 @@ Mapped map_for_target(const Task& task, const SurfacePiece& piece, const SeamTar
   const bool missed = misses(searched, target);
   if (is_asked_of_whole(task.input, task.options) || work.out_of_time()) return searched;
   if (!missed && (target.flat_seams == 0 || is_flat(searched))) return searched;
-  if (missed)
+  if (missed) {
     split_to_target(task, piece, target, work.part(kSearchedAll, kSearchedAll), stages, searched);
+  }
   const std::vector<Index>& vertex = task.admitted.input_vertex;
   const double times = std::max(target.flat_seams, missed ? kUnfolded : 0);
   const double most = times * seam_length(searched.opened.charts, vertex);

@@ -117,7 +117,8 @@ bool divide_locked(const EdgeMarks& marks, const EdgeMarks& locked) {
   return false;
 }
 
-/// `whole`: charts that only a seam inside a polygon would split are left out.
+/// Splits the charts `which`. `whole`: charts that only a seam inside a polygon would split are
+/// left out.
 Halves halves_of(const Admitted& admitted, const PolygonParts& polygons,
                  const std::vector<Index>& which, const std::vector<AtlasChart>& charts,
                  const std::vector<MappedChart>& maps, const Work& work, bool whole = false) {
@@ -137,6 +138,7 @@ Halves halves_of(const Admitted& admitted, const PolygonParts& polygons,
   return halves;
 }
 
+/// Puts halves in the place of the charts that they are of.
 void replace(const Admitted& admitted, Halves halves, std::vector<AtlasChart>& charts,
              std::vector<MappedChart>& maps) {
   for (std::size_t c = 0; c < charts.size(); ++c) {
@@ -153,21 +155,18 @@ bool is_sound(const MappedChart& map) {
   return !map.error && map.outcome <= Outcome::kNotConverged;
 }
 
-/// The mean energy of each chart.
-std::vector<double> energies_of(const std::vector<AtlasChart>& charts,
+/// Of each chart its area and its energies.
+std::vector<ChartInfo> measured(const std::vector<AtlasChart>& charts,
                                 const std::vector<MappedChart>& maps, const Work& work) {
   std::vector<ChartInfo> info(charts.size());
   measure_charts(charts, maps, 1, info, work);
-  std::vector<double> energies;
-  for (const ChartInfo& one : info) energies.push_back(one.symmetric_dirichlet);
-  return energies;
+  return info;
 }
 
 /// The chart of several faces that brings most energy beyond that which is given for all, or kNone.
 Index farthest_beyond(double energy, const std::vector<AtlasChart>& charts,
                       const std::vector<MappedChart>& maps, const Work& work) {
-  std::vector<ChartInfo> info(charts.size());
-  measure_charts(charts, maps, 1, info, work);
+  const std::vector<ChartInfo> info = measured(charts, maps, work);
   Index worst = kNone;
   double most = 0;
   for (Index c = 0; c < size_of(charts); ++c) {
@@ -186,7 +185,7 @@ double beyond_reason(const std::optional<SeamTarget>& target) {
 }
 
 bool is_hopeless(const AtlasChart& chart, const MappedChart& map, double most, const Work& work) {
-  return !is_sound(map) || energies_of({chart}, {map}, work).front() > most;
+  return !is_sound(map) || measured({chart}, {map}, work).front().symmetric_dirichlet > most;
 }
 
 void sort_by_first_face(const Admitted& admitted, std::vector<AtlasChart>& charts,
@@ -234,10 +233,12 @@ bool split_worst(const Admitted& admitted, const PolygonParts& polygons, double 
   Halves halves = halves_of(admitted, polygons, {worst}, charts, maps, work, true);
   if (halves.charts.empty()) return false;
   std::vector<MappedChart> anew = map_charts(halves.charts, {}, options, work);
-  const std::vector<double> before = energies_of(halves.charts, halves.maps, work);
-  const std::vector<double> after = energies_of(halves.charts, anew, work);
+  const std::vector<ChartInfo> before = measured(halves.charts, halves.maps, work);
+  const std::vector<ChartInfo> after = measured(halves.charts, anew, work);
   for (std::size_t c = 0; c < anew.size(); ++c) {
-    const bool is_kept = is_sound(maps[worst]) && (!is_sound(anew[c]) || before[c] < after[c]);
+    const bool is_kept =
+        is_sound(maps[worst]) &&
+        (!is_sound(anew[c]) || before[c].symmetric_dirichlet < after[c].symmetric_dirichlet);
     if (!is_kept) halves.maps[c] = std::move(anew[c]);
   }
   replace(admitted, std::move(halves), charts, maps);

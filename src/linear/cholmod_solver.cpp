@@ -50,7 +50,7 @@ class CholmodSolver final : public SpdSolver {
     cholmod_factorize(&view, factor_, &common_);
     if (common_.status == CHOLMOD_NOT_POSDEF) return false;
     require_success();
-    // BLAS takes what is no number for a pivot.
+    // It takes what is no number for a pivot.
     return factor_->minor == factor_->n && cholmod_rcond(factor_, &common_) > 0;
   }
 

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -83,7 +83,7 @@ class OutOfMemory : public testing::TestWithParam<Command> {
 };
 
 TEST_P(OutOfMemory, EndsWithOneLineAndLeavesNothing) {
-  if (beltrami_has("gpl")) GTEST_SKIP() << "BLAS ends the process where memory does";
+  if (beltrami_has("gpl")) GTEST_SKIP() << "what CHOLMOD links ends the process where memory does";
   const long count = count_allocations();
   ASSERT_GT(count, 100);
   for (long at = 1; at <= count; at += GetParam().step) {

@@ -208,7 +208,8 @@ class UvMesh {
     if (pages.size() != faces()) note("there is not one page per face");
     return *this;
   }
-  /// A label for each face: charts of different labels get different pages.
+  /// A label for each face: charts of different labels get different pages, in the order of the
+  /// labels. All meshes have them, or none, and none has kept_pages.
   UvMesh& page_labels(const Indices<1>& labels) noexcept {
     mesh_.page_labels = labels.buffer();
     note(labels.defect());
