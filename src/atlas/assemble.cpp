@@ -79,11 +79,11 @@ void Collector::add(const AtlasChart& part, const std::vector<Vec2>& uvs) {
   }
   for (Index f = 0; f < part.real_faces; ++f) {
     poll_();
-    const Index own = chart.input_face[f], input = admitted_.input_face[own];
+    const Index input = admitted_.input_face[chart.input_face[f]];
     atlas_.chart_of_face[input] = c;
-    atlas_.reversed[input] = admitted_.reversed[own];
+    atlas_.reversed[input] = part.is_reversed(admitted_, f);
     for (int k = 0; k < 3; ++k) {
-      const int corner = admitted_.input_corner(own, k);
+      const int corner = part.input_corner(admitted_, f, k);
       const Index uv = place[chart.mesh.faces[f][k]];
       atlas_.faces[input][corner] = uv;
       Index& known = uv_of_[faces_[input][corner]];
@@ -159,7 +159,7 @@ void Collector::stack(const std::vector<StackedFace>& stacked) {
   for (const StackedFace& face : stacked) {
     poll_();
     atlas_.chart_of_face[face.face] = atlas_.chart_of_face[face.on];
-    atlas_.reversed[face.face] = face.reversed;
+    atlas_.reversed[face.face] = face.runs_against != atlas_.reversed[face.on];
     atlas_.excepted[face.face] = true;
     for (int k = 0; k < 3; ++k) {
       const Index vertex = admitted_.welded(faces_[face.face][k]);

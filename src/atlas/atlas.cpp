@@ -13,6 +13,7 @@
 #include "atlas/assemble.h"
 #include "atlas/chart_parts.h"
 #include "atlas/fit_page.h"
+#include "atlas/keep_windings.h"
 #include "atlas/map_charts.h"
 #include "atlas/open.h"
 #include "atlas/open_and_map.h"
@@ -203,6 +204,7 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
     std::vector<double> scales;
     for (int round = 0;; ++round) {
       do {
+        keep_windings(admitted, mapped.charts, mapped.maps, inner.aside());
         placed = mapped.maps;
         scales = scale_by_density(input.densities, admitted, mapped.charts, placed);
       } while (split_for_pages(input, admitted, exponent, options, placed, inner.aside(), mapped));

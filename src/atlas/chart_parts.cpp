@@ -77,6 +77,7 @@ std::vector<ChartPart> parts_along(const AtlasChart& chart, const MappedChart& m
     if (first_virtual == own.input_face.begin()) continue;
     ChartPart& part = parts.emplace_back();
     part.chart.real_faces = static_cast<Index>(first_virtual - own.input_face.begin());
+    part.chart.is_turned = chart.is_turned;
     part.map.outcome = map.outcome;
     part.map.scale = map.scale;
     part.map.own_turns = map.own_turns;

@@ -33,6 +33,20 @@ struct AtlasChart {
   /// Where seams were found on the surface itself, the map that they were judged by: one UV per
   /// vertex, in the unit of the surface; else empty.
   std::vector<Vec2> local_map = {};
+  bool is_turned = false;  ///< its faces run against those of the surface
+
+  /// The half-edge of the surface that a half-edge of a real face is.
+  Index on_surface(Index h) const {
+    return 3 * chart.input_face[h / 3] + (is_turned ? 2 - h % 3 : h % 3);
+  }
+  /// The corner of a face of the input that corner k of a real face is.
+  int input_corner(const Admitted& admitted, Index face, int k) const {
+    return admitted.input_corner(chart.input_face[face], is_turned ? (3 - k) % 3 : k);
+  }
+  /// Whether a real face runs against that of the input.
+  bool is_reversed(const Admitted& admitted, Index face) const {
+    return admitted.reversed[chart.input_face[face]] != is_turned;
+  }
 };
 
 /// What draws seams that are searched for, as SeamHints has it: of the input's vertices and faces,

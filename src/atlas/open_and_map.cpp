@@ -89,7 +89,8 @@ bool stack(const SurfacePiece& piece, const SurfacePiece& on, bool mirrored,
     StackedFace face{.face = admitted.input_face[own],
                      .on = admitted.input_face[on.face[f]],
                      .corner = {},
-                     .reversed = admitted.reversed[own] != laid->reflected};
+                     .runs_against = laid->reflected !=
+                                     (admitted.reversed[own] != admitted.reversed[on.face[f]])};
     for (int k = 0; k < 3; ++k) {
       const Index h = laid->onto[3 * f + k], from = laid->reflected ? Surface::next(h) : h;
       face.corner[admitted.input_corner(own, from % 3)] = admitted.input_corner(on.face[f], k);

@@ -17,8 +17,8 @@ namespace beltrami {
 /// A face of the input that lies on another one, which is in a chart.
 struct StackedFace {
   Index face = 0, on = 0;
-  Triangle corner;        ///< per corner of the face that of the other with the same UV
-  bool reversed = false;  ///< positive in the plane the other way round
+  Triangle corner;            ///< per corner of the face that of the other with the same UV
+  bool runs_against = false;  ///< positive in the plane as the other one is not
 };
 
 /// Charts and their maps, by their least face of the input.

@@ -47,11 +47,11 @@ class Locator {
 
   void locate(Index c, const AtlasChart& part) {
     for (Index f = 0; f < part.real_faces; ++f) {
-      const Index own = part.chart.input_face[f], input = admitted_.input_face[own];
+      const Index input = admitted_.input_face[part.chart.input_face[f]];
       for (auto at = place_of_.lower_bound({input, 0});
            at != place_of_.end() && at->first.first == input; ++at) {
         for (int k = 0; k < 3; ++k) {
-          if (admitted_.input_corner(own, k) != at->first.second) continue;
+          if (part.input_corner(admitted_, f, k) != at->first.second) continue;
           at->second = {c, part.chart.mesh.faces[f][k]};
         }
       }

@@ -71,11 +71,10 @@ EdgeMarks locked_in(const Admitted& admitted, const PolygonParts& polygons,
   if (polygons.polygon.empty()) return {};
   const DiskMesh& mesh = chart.chart.mesh;
   EdgeMarks locked(mesh.twin.size(), false);
-  const auto on_surface = [&](Index h) { return 3 * chart.chart.input_face[h / 3] + h % 3; };
   for (Index h = 0; h < 3 * chart.real_faces; ++h) {
     const Index twin = mesh.twin[h];
     if (twin == kNone || twin / 3 >= chart.real_faces) continue;
-    locked[h] = is_inside_polygon(admitted, polygons, on_surface(h), on_surface(twin));
+    locked[h] = is_inside_polygon(admitted, polygons, chart.on_surface(h), chart.on_surface(twin));
   }
   return locked;
 }

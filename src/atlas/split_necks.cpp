@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "atlas/chart_parts.h"
+#include "atlas/keep_windings.h"
 #include "atlas/measure.h"
 #include "atlas/pack_maps.h"
 #include "base/interrupt.h"
@@ -248,10 +249,8 @@ class Splitter {
   /// Whether its border is another than the surface's: what lies flat without a seam stays whole.
   bool has_seam(const AtlasChart& chart) const {
     for (Index h = 0; h < 3 * chart.real_faces; ++h) {
-      const Index on_surface = 3 * chart.chart.input_face[h / 3] + h % 3;
-      if (chart.chart.mesh.twin[h] == kNone && admitted_.surface.twin[on_surface] != kNone) {
-        return true;
-      }
+      const bool is_border = chart.chart.mesh.twin[h] == kNone;
+      if (is_border && admitted_.surface.twin[chart.on_surface(h)] != kNone) return true;
     }
     return false;
   }
@@ -274,7 +273,6 @@ class Splitter {
   std::vector<double> costs(const AtlasChart& chart) const {
     const DiskMesh& mesh = chart.chart.mesh;
     std::vector<double> costs(mesh.twin.size(), kFar);
-    const auto of_surface = [&](Index h) { return 3 * chart.chart.input_face[h / 3] + h % 3; };
     PollSometimes poll;
     for (Index h = 0; h < size_of(mesh.twin); ++h) {
       poll();
@@ -283,7 +281,8 @@ class Splitter {
       if (h >= 3 * chart.real_faces || twin >= 3 * chart.real_faces) {
         costs[h] = 0;
       } else if (rules_.polygons.polygon.empty() ||
-                 !is_inside_polygon(admitted_, rules_.polygons, of_surface(h), of_surface(twin))) {
+                 !is_inside_polygon(admitted_, rules_.polygons, chart.on_surface(h),
+                                    chart.on_surface(twin))) {
         costs[h] = (mesh.positions[mesh.target(h)] - mesh.positions[mesh.origin(h)]).norm();
       }
     }
@@ -473,6 +472,7 @@ Pages pack_split_maps(const Admitted& admitted, const SplitRules& rules, const P
   const auto packed = [&](Index count, double from, double to) {
     Packed made;
     splitter.take(count, {made.charts, made.maps, made.scales});
+    keep_windings(admitted, made.charts, made.maps, work.aside());
     made.length = seam_length(made.charts, admitted.input_vertex);
     made.pages = pack_maps(made.charts, options, float32, made.maps, work.part(from, to));
     made.utilisation = utilisation_of(made.charts, made.maps, made.pages);
