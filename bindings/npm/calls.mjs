@@ -123,8 +123,9 @@ export class Calls {
   #hook = null;
   #failure = null;
 
-  constructor(exports, hooks) {
+  constructor(exports, hooks, threads) {
     this.c = exports;
+    this.threads = threads;
     hooks.progress = (fraction, stage) => this.#progress(fraction, stage);
   }
 
@@ -146,6 +147,7 @@ export class Calls {
       if (this.c.beltrami_create_(1, place) !== 0) throw new BeltramiError('out of memory', 'BELTRAMI_E_OUT_OF_MEMORY');
       context = new DataView(this.c.memory.buffer).getUint32(place, true);
       this.#setOptions(context, arena, call, options);
+      if (this.threads > 1) this.#lendThreads(context, arena);
       return context;
     } catch (error) {
       this.c.beltrami_destroy(context);
@@ -216,6 +218,13 @@ export class Calls {
       }
       this.refuse(context, status);
     }
+  }
+
+  /** The loops of calls on a context go to all threads. */
+  #lendThreads(context, arena) {
+    this.refuse(context, this.c.beltrami_set_parallel_for(context, this.c.loop_function(), 0));
+    const key = this.c.beltrami_option_find(arena.give(new TextEncoder().encode('threads\0')));
+    this.refuse(context, this.c.beltrami_set_int(context, key, BigInt(this.threads)));
   }
 
   #isFloat(arena, key) {

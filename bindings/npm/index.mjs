@@ -1,55 +1,23 @@
 // beltrami in JavaScript, for node, pages and their workers. Types and documentation: index.d.ts.
 import { BeltramiError, Calls, checked, element, KINDS, readStruct, REALS, WHOLE, wrong } from './calls.mjs';
 import { Editor } from './editor.mjs';
+import { imports } from './system.mjs';
 import { layouts } from './tables.mjs';
+import { startHelpers, threadsFor, withSharedMemory } from './threads.mjs';
 
 export { BeltramiError };
 
-/** What the C library asks of the system: the time, random numbers, and where a message of its own end goes. */
-function system(memory) {
-  const view = () => new DataView(memory().buffer);
-  const nothing = (count, size) => {
-    view().setUint32(count, 0, true);
-    view().setUint32(size, 0, true);
-    return 0;
-  };
-  const badDescriptor = () => 8;
-  return {
-    args_get: () => 0,
-    args_sizes_get: nothing,
-    environ_get: () => 0,
-    environ_sizes_get: nothing,
-    clock_time_get: (id, _precision, at) => {
-      const milliseconds = id === 0 ? Date.now() : performance.now();
-      view().setBigUint64(at, BigInt(Math.round(milliseconds * 1e6)), true);
-      return 0;
-    },
-    fd_close: badDescriptor,
-    fd_seek: badDescriptor,
-    fd_read: badDescriptor,
-    fd_fdstat_get: badDescriptor,
-    fd_write: (_descriptor, list, count, written) => {
-      let bytes = 0;
-      for (let i = 0; i < count; ++i) bytes += view().getUint32(list + 8 * i + 4, true);
-      view().setUint32(written, bytes, true);
-      return 0;
-    },
-    random_get: (at, size) => {
-      crypto.getRandomValues(new Uint8Array(memory().buffer, at, size));
-      return 0;
-    },
-    sched_yield: () => 0,
-    proc_exit: (code) => {
-      throw new BeltramiError(`the library ended with ${code}`, 'BELTRAMI_E_INTERNAL');
-    },
-  };
-}
+/** Of the memory, in pages: tools/dist/npm.py links the module for these. */
+const FIRST_PAGES = 256, MOST_PAGES = 65535;
 
 class Beltrami {
   #calls;
+  #endHelpers;
 
-  constructor(calls) {
+  constructor(calls, endHelpers) {
     this.#calls = calls;
+    this.#endHelpers = endHelpers;
+    this.threads = calls.threads;
     this.buildInfo = calls.text(calls.c.beltrami_build_info());
     const number = calls.c.beltrami_version();
     this.version = [number / 1000000, (number / 1000) % 1000, number % 1000].map(Math.trunc).join('.');
@@ -151,6 +119,12 @@ class Beltrami {
   }
 
   edit(surface, options = {}) { return new Editor(this.#calls, surface, options); }
+
+  close() {
+    this.#calls.refuseWithin();
+    this.#endHelpers();
+    this.#calls.threads = this.threads = 1;
+  }
 }
 
 /** The bytes of a file beside this one, or at an address; or what they were compiled to. */
@@ -169,15 +143,38 @@ async function fetched(source) {
   return response.arrayBuffer();
 }
 
-export async function load(source) {
-  let exports = null;
+/** Memory that grows as far as this machine has addresses for: what is shared takes all of them at once. */
+function growing(shared) {
+  for (let maximum = MOST_PAGES; ; maximum >>= 1) {
+    try {
+      return new WebAssembly.Memory({ initial: FIRST_PAGES, maximum, shared });
+    } catch (error) {
+      if (maximum < 2 * FIRST_PAGES) throw error;
+    }
+  }
+}
+
+/** The module, compiled; with `shared`, for memory that threads share. */
+async function compiled(source, shared) {
+  const found = await fetched(source);
+  if (!shared) return found instanceof WebAssembly.Module ? found : WebAssembly.compile(found);
+  if (found instanceof WebAssembly.Module) {
+    throw wrong('for threads load takes the address or the bytes of beltrami.wasm, and compiles them itself');
+  }
+  return WebAssembly.compile(withSharedMemory(found));
+}
+
+export async function load(source, { threads = 1 } = {}) {
+  const count = await threadsFor(threads), shared = count > 1;
+  const module = await compiled(source, shared);
+  const memory = growing(shared);
   const hooks = { progress: () => 0 };
-  const imports = {
-    wasi_snapshot_preview1: system(() => exports.memory),
-    beltrami: { progress: (fraction, stage) => hooks.progress(fraction, stage) },
+  const end = (code) => {
+    throw new BeltramiError(`the library ended with ${code}`, 'BELTRAMI_E_INTERNAL');
   };
-  const made = await WebAssembly.instantiate(await fetched(source), imports);
-  exports = (made instanceof WebAssembly.Instance ? made : made.instance).exports;
-  exports._initialize();
-  return new Beltrami(new Calls(exports, hooks));
+  const asked = imports(memory, (fraction, stage) => hooks.progress(fraction, stage), end);
+  const { exports: c } = await WebAssembly.instantiate(module, asked);
+  c._initialize();
+  const endHelpers = shared ? await startHelpers(module, memory, c, count - 1) : () => {};
+  return new Beltrami(new Calls(c, hooks, count), endHelpers);
 }

@@ -68,6 +68,6 @@ if(BELTRAMI_ZIG_TARGET MATCHES "wasi")
   file(READ ${BELTRAMI_RUNTIME}/flags flags)
   # Eigen has none of its ways around GCC's defects, which are in the assembler's language.
   set(CMAKE_CXX_FLAGS_INIT "-g0 ${flags} -fgnuc-version=0 -I${BELTRAMI_DIST}/include")
-  set(CMAKE_C_FLAGS_INIT "-g0 -mcpu=generic+exception_handling+simd128+bulk_memory")
+  set(CMAKE_C_FLAGS_INIT "-g0 -mcpu=generic+atomics+exception_handling+simd128+bulk_memory")
   set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 endif()

@@ -19,8 +19,11 @@ export function launch() {
 /** Where the folder is served: pages are to work below any. */
 const BELOW = '/some/where/';
 
+/** What a page has to be sent for its workers to share memory. */
+const ISOLATING = { 'cross-origin-opener-policy': 'same-origin', 'cross-origin-embedder-policy': 'require-corp' };
+
 /** Serves a folder on a free port of this machine; returns its address, and how to end it. */
-export async function serve(folder) {
+export async function serve(folder, { isolated = false } = {}) {
   const server = createServer((request, response) => {
     const path = normalize(decodeURIComponent(new URL(request.url, 'http://localhost').pathname));
     const inside = path.startsWith(BELOW) ? path.slice(BELOW.length) : 'none', file = join(folder, inside === '' || inside.endsWith('/') ? `${inside}index.html` : inside);
@@ -28,7 +31,8 @@ export async function serve(folder) {
       response.writeHead(404).end();
       return;
     }
-    response.writeHead(200, { 'content-type': KINDS[extname(file)] ?? 'application/octet-stream' });
+    const kind = { 'content-type': KINDS[extname(file)] ?? 'application/octet-stream' };
+    response.writeHead(200, isolated ? { ...kind, ...ISOLATING } : kind);
     createReadStream(file).pipe(response);
   });
   await new Promise((ready) => server.listen(0, '127.0.0.1', ready));

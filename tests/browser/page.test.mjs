@@ -54,6 +54,26 @@ test('an example is unwrapped, seen, and changes with the slider', { skip }, asy
   assert.deepEqual(faults, []);
 });
 
+test('isolated it takes all processors, for the same numbers', { skip }, async () => {
+  const isolated = await serve(process.env.SITE, { isolated: true }), found = [];
+  try {
+    for (const { address } of [server, isolated]) {
+      const { page, faults } = await open(browser, address);
+      await page.click('text=Try an example');
+      await shown(page, 1);
+      const threads = await page.evaluate(() => [document.getElementById('viewer').dataset.threads, navigator.hardwareConcurrency].map(Number));
+      const { bytes } = await downloaded(page, 'OBJ');
+      found.push({ threads, text: bytes.toString() });
+      assert.deepEqual(faults, []);
+    }
+  } finally {
+    isolated.end();
+  }
+  assert.equal(found[0].threads[0], 1);
+  assert.equal(found[1].threads[0], found[1].threads[1]);
+  assert.equal(found[0].text, found[1].text);
+});
+
 test('OBJ keeps its lines, and comes back with UVs', { skip }, async () => {
   const { page, faults } = await open(browser, server.address);
   await drop(page, 'cube.obj', cube);

@@ -19,22 +19,42 @@ PACKAGE = ROOT / "bindings" / "npm"
 SUFFIXES = {".mjs", ".ts", ".md"}  # of what the package has; types.d.ts is the beginning of index.d.ts
 VIEWER = ROOT / "program" / "viewer"
 STACK = 8 << 20  # bytes: as threads of Linux have
+# Of the memory that the module imports, in bytes. index.mjs has both in pages.
+FIRST_MEMORY, MOST_MEMORY = 256 << 16, 65535 << 16
+#: What index.mjs and threads.mjs need of it to run it on several threads.
+OF_THREADS = ["__stack_pointer", "__tls_size", "__wasm_init_tls"]
+#: As WebAssembly writes that a module imports a memory, which is shared, or is not.
+SHARED = b"\x03env\x06memory\x02\x03"
+UNSHARED = b"\x03env\x06memory\x02\x01"
 MOST_BYTES = 1_500_000  # of the package
 
 
 def link(build: Path, runtime_library: Path, target: Path) -> Path:
-    """Link the static library of a build into a module that exports the C interface."""
+    """Link the static library of a build into a module that exports the C interface.
+
+    It is linked for memory that several threads share, and then says that its memory is not: so it
+    runs everywhere, and threads.mjs takes that back where there are to be threads.
+    """
     zig = str(inputs.zig_path())
-    glue = build / "glue.o"
+    glue, malloc = build / "glue.o", build / "malloc.o"
+    runtime.build_malloc(inputs.zig_path(), malloc)
     common = ["-target", runtime.TARGET, *runtime.MACHINE, "-g0", "-O2"]
     include = f"-I{ROOT / 'include'}"
     compiling = [zig, "cc", *common, include, "-c", str(PACKAGE / "glue.c"), "-o", str(glue)]
     subprocess.run(compiling, check=True)
     exports = [f"-Wl,--export={name}" for name in sorted(checks.symbols() | {"malloc", "free"})]
+    exports += [f"-Wl,--export={name}" for name in OF_THREADS]
+    memory = ["--import-memory", "--export-memory", "--shared-memory"]
+    memory += [f"--initial-memory={FIRST_MEMORY}", f"--max-memory={MOST_MEMORY}"]
     libraries = [str(build / "src" / "libbeltrami.a"), str(runtime_library)]
     words = [zig, "c++", *common, "-s", "-mexec-model=reactor", "-nostdlib++", *exports]
-    words += [f"-Wl,-z,stack-size={STACK}", str(glue), *libraries, "-o", str(target)]
+    words += [*(f"-Wl,{word}" for word in memory), f"-Wl,-z,stack-size={STACK}"]
+    words += [str(glue), str(malloc), *libraries, "-o", str(target)]
     subprocess.run(words, check=True)
+    module = target.read_bytes()
+    if module.count(SHARED) != 1:
+        raise checks.CheckError(f"{target.name} does not import a shared memory")
+    target.write_bytes(module.replace(SHARED, UNSHARED))
     return target
 
 

@@ -170,7 +170,7 @@ class Page {
     this.worker.postMessage(message);
   }
 
-  #answer({ fraction, stage, atlas, edited, failure }) {
+  #answer({ fraction, stage, atlas, threads, edited, failure }) {
     if (stage !== undefined) {
       this.progress.value = fraction;
       this.stage.textContent = stage;
@@ -191,6 +191,7 @@ class Page {
       return;
     }
     this.cancel();
+    this.root.dataset.threads = String(threads);
     this.unwrapped = { name: this.name, mesh: this.mesh };
     this.drop.remove();
     this.#show(atlas, arraysOf(this.mesh, atlas), false);

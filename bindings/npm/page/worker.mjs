@@ -2,7 +2,7 @@
 import { load } from './beltrami/index.mjs';
 import { facesOfCorners } from './corners.mjs';
 
-const loading = load();
+const loading = load(undefined, { threads: 0 });
 /** Milliseconds between two messages of progress. */
 const BETWEEN = 50;
 /** The chart of a face without area. */
@@ -45,7 +45,7 @@ function follow() {
 const actions = {
   unwrap(beltrami, { surface, options }) {
     const atlas = beltrami.unwrap(surface, { ...options, progress: reported() });
-    postMessage({ atlas, version: beltrami.version });
+    postMessage({ atlas, threads: beltrami.threads });
   },
   begin(beltrami, { surface, options }) {
     faces = facesOfCorners(surface);

@@ -1,7 +1,7 @@
 """The C++ library for WebAssembly: zig's own has neither exceptions nor locks.
 
-Compiled from the sources that zig brings, with WebAssembly's exceptions, and locks that cost
-nothing, as there is one thread.
+Compiled from the sources that zig brings, with WebAssembly's exceptions, and locks for the threads
+that JavaScript lends.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 TARGET = "wasm32-wasi"
-MACHINE = ["-mcpu=generic+exception_handling+simd128+bulk_memory"]
+MACHINE = ["-mcpu=generic+atomics+exception_handling+simd128+bulk_memory"]
 
 CONFIGURATION = {
     "_LIBCPP_ABI_VERSION": "1",
@@ -99,6 +99,17 @@ def flags(zig: Path) -> list[str]:
     ]
 
 
+def build_malloc(zig: Path, target: Path) -> None:
+    """Compile the malloc of zig's C library with the lock that it has for several threads.
+
+    Its functions are weak there; the linker is to take these for certain.
+    """
+    source = str(zig.parent / "lib/libc/wasi/emmalloc/emmalloc.c")
+    defined = ["-D__EMSCRIPTEN_PTHREADS__", "-Dweak=used", "-DNDEBUG"]
+    words = [str(zig), "cc", "-target", TARGET, *MACHINE, "-g0", "-O2", "-w", *defined]
+    subprocess.run([*words, "-c", source, "-o", str(target)], check=True)
+
+
 def build(zig: Path, folder: Path) -> Path:
     """Compile the library into `folder`, unless it is there; return it."""
     library = folder / "libc++.a"
@@ -120,7 +131,7 @@ def build(zig: Path, folder: Path) -> Path:
         spaces = ["-DLIBC_NAMESPACE=__llvm_libc_common_utils"]
         compile_source("c++", f"libcxx/src/{name}.cpp", *building, *spaces, *inner)
     for name in EXCEPTIONS:
-        building = ["-D_LIBCXXABI_BUILDING_LIBRARY", "-D_LIBCXXABI_HAS_NO_THREADS"]
+        building = ["-D_LIBCXXABI_BUILDING_LIBRARY"]
         ends = ["-DLIBCXXABI_NON_DEMANGLING_TERMINATE"]
         compile_source("c++", f"libcxxabi/src/{name}.cpp", *building, *ends, *inner)
     unwinding = [f"-I{lib}/libunwind/include", "-D__WASM_EXCEPTIONS__", "-D_LIBUNWIND_HIDE_SYMBOLS"]
