@@ -16,7 +16,6 @@
 #include "admit/admit.h"
 #include "admit/orient.h"
 #include "admit/weld.h"
-#include "base/error.h"
 #include "base/interrupt.h"
 #include "base/types.h"
 #include "base/vectors.h"

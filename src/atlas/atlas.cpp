@@ -47,6 +47,12 @@ constexpr double kAdmitted = 0.03, kMapped = 0.83, kPlaced = 0.98;
 /// that was halved so often is a crumb.
 constexpr int kMostRescues = 6;
 
+/// Steps that the map of a chart takes where the chart may be split instead, unless another number
+/// is asked for. Most charts take ten. Of 383 public files 11 have one that takes over 100, and
+/// none misses its target for stopping at 150; beds of printers take half the time at 200 of what
+/// 500 take, for better charts.
+constexpr int kMostSteps = 200;
+
 /// Texels per unit of a surface of unit area that stand for any fewer.
 constexpr double kLeastDensity = 1e-100;
 
@@ -175,8 +181,9 @@ bool rescue(const AtlasInput& input, const Admitted& admitted, const AtlasOption
 
 }  // namespace
 
-Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& work) {
+Atlas unwrap(const AtlasInput& input, const AtlasOptions& asked, const Work& work) {
   Atlas atlas;
+  AtlasOptions options = asked;
   const auto stage = [&](const char* name, double from, double to, auto&& body) {
     run_stage(name, work.part(from, to), atlas.stages,
               [&](StageStatistics&, const Work& inner) { body(inner); });
@@ -188,6 +195,9 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& options, const Work& w
     // What follows goes over it many times, and takes half the time where neighbours lie close.
     if (admitted.surface.face_count() >= kWorthArranging) arrange_admitted(admitted, inner);
     exponent = bring_to_unit(admitted.surface, inner);
+    options.chart.may_be_split = may_split(input, admitted, options);
+    const bool is_asked = options.chart.max_iterations != ChartOptions().max_iterations;
+    if (options.chart.may_be_split && !is_asked) options.chart.max_iterations = kMostSteps;
   });
   MappedSurface mapped =
       open_and_map(input, admitted, exponent, options, work.part(kAdmitted, kMapped), atlas.stages);

@@ -137,9 +137,9 @@ Attempts try_all(const DiskMesh& mesh, const Normalisation& frame, const Inherit
   if (options.method == Method::kGif) return try_in_turn(mesh, frame, ways, options, work);
   const bool in_levels =
       options.method == Method::kBeltrami && has_levels(mesh.face_count(), asked_for, options);
-  if (in_levels && !affords(mesh, options, Extra::kWholeFactor, work)) {
-    return try_in_turn(mesh, frame, ways, options, work);  // all others take one
-  }
+  const bool can_climb_anew =
+      !options.may_be_split && affords(mesh, options, Extra::kWholeFactor, work);
+  if (in_levels && !can_climb_anew) return try_in_turn(mesh, frame, ways, options, work);
   if (options.method == Method::kBeltrami) {
     for (const Index other : other_coarse_faces(mesh, asked_for)) {
       ways.push_back({method(other), true});

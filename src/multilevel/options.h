@@ -34,6 +34,8 @@ struct ChartOptions {
   /// No public option: the map only tells what a cut is worth, and starts that are hard to mend are
   /// given up.
   bool is_trial = false;
+  /// Likewise: a chart of an atlas is split in two sooner than several levels are climbed anew.
+  bool may_be_split = false;
   /// Likewise: sides of the boundary that touch in the best map are parted by hardly anything. Not
   /// on a coarse mesh, from whose map a finer one starts: there contact holds them apart, with room
   /// for what is between its vertices.
