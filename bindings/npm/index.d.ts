@@ -225,6 +225,8 @@ export class Beltrami {
   readonly buildInfo: string;
   /** Such as "0.1.0". */
   readonly version: string;
+  /** How many threads a call has, its own among them. */
+  readonly threads: number;
   /** Cuts any surface into charts, flattens and packs them. Throws BeltramiError. */
   unwrap(surface: Surface, options?: UnwrapOptions): Atlas;
   /** Flattens one disk. Throws BeltramiError. */
@@ -238,14 +240,25 @@ export class Beltrami {
    * flattening, welding, holes and packing. Throws BeltramiError, as its calls do.
    */
   edit(surface: Surface, options?: UnwrapOptions): Editor;
+  /** Ends the threads that `load` has started. Later calls have one. */
+  close(): void;
+}
+
+export interface Loading {
+  /**
+   * How many threads a call is to have: the one that calls, and workers. 0: as many as there are processors. In a page
+   * one, unless it is cross-origin isolated. The results have the same bits. Default 1.
+   */
+  threads?: number;
 }
 
 /**
  * Loads the library. `source` is a compiled module, the bytes of beltrami.wasm, its address, or a response that
- * has them; without it beltrami.wasm beside this file is taken.
+ * has them; without it beltrami.wasm beside this file is taken. A compiled module has one thread.
  */
 export function load(
-  source?: WebAssembly.Module | BufferSource | Response | URL | string
+  source?: WebAssembly.Module | BufferSource | Response | URL | string,
+  options?: Loading
 ): Promise<Beltrami>;
 
 
