@@ -195,7 +195,8 @@ Atlas unwrap(const AtlasInput& input, const AtlasOptions& asked, const Work& wor
     // What follows goes over it many times, and takes half the time where neighbours lie close.
     if (admitted.surface.face_count() >= kWorthArranging) arrange_admitted(admitted, inner);
     exponent = bring_to_unit(admitted.surface, inner);
-    options.chart.may_be_split = may_split(input, admitted, options);
+    // Charts between seams that are given, or as few as there can be, stay whole where they can.
+    options.chart.may_be_split = options.target && may_split(input, admitted, options);
     const bool is_asked = options.chart.max_iterations != ChartOptions().max_iterations;
     if (options.chart.may_be_split && !is_asked) options.chart.max_iterations = kMostSteps;
   });
