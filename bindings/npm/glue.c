@@ -1,5 +1,4 @@
-/* What JavaScript cannot do by itself: hand the library functions to call, and work in its loops.
- */
+/* What JavaScript cannot do by itself: give the library functions, and help in its loops. */
 #include <beltrami/beltrami.h>
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -30,6 +29,7 @@ static _Atomic bool loop_open;    /* whether a helper may take some */
 static _Atomic int32_t loop_number;
 static _Atomic int32_t helpers_inside;
 static _Atomic bool helper_lost;
+static bool has_helpers = true; /* of the calling thread alone */
 
 static void take_jobs(void) {
   for (int32_t index; (index = atomic_fetch_add(&loop_next, 1)) < loop_count;) {
@@ -45,6 +45,10 @@ static void run_loop(void* user, int32_t count, beltrami_job job, void* data) {
   loop_data = data;
   loop_count = count;
   atomic_store(&loop_next, 0);
+  if (!has_helpers) {
+    take_jobs();
+    return;
+  }
   atomic_store(&loop_open, true);
   atomic_fetch_add(&loop_number, 1);
   __builtin_wasm_memory_atomic_notify((int*)&loop_number, (unsigned)count);
@@ -73,6 +77,12 @@ __attribute__((export_name("help"))) void help(void) {
     if (atomic_load(&loop_open)) take_jobs();
     atomic_fetch_sub(&helpers_inside, 1);
   }
+}
+
+/* Loops of contexts that are still open have no helper from now on: one that is ended somewhere in
+ * `help` may never leave it. Not during a loop. */
+__attribute__((export_name("end_help"))) void end_help(void) {
+  has_helpers = false;
 }
 
 /* A helper has trapped: whoever waits for it is to trap as well. */

@@ -31,10 +31,10 @@ export function withSharedMemory(bytes) {
 /** Starts `count` helpers, and returns what ends them. */
 export async function startHelpers(module, memory, c, count) {
   const threads = inNode ? await import('node:worker_threads') : null;
-  const address = new URL('./helper.mjs', import.meta.url);
   const workers = [];
   const ready = Array.from({ length: count }, () => new Promise((resolve, reject) => {
-    const worker = inNode ? new threads.Worker(address) : new Worker(new URL('./helper.mjs', import.meta.url), { type: 'module' });
+    // Bundlers look for these very words.
+    const worker = inNode ? new threads.Worker(new URL('./helper.mjs', import.meta.url)) : new Worker(new URL('./helper.mjs', import.meta.url), { type: 'module' });
     workers.push(worker);
     const failed = (error) => reject(new Error(`a thread did not start: ${error.message}`));
     if (inNode) {
@@ -48,6 +48,7 @@ export async function startHelpers(module, memory, c, count) {
     worker.postMessage({ module, memory, top: stack + STACK, tls });
   }));
   const close = () => {
+    c.end_help();
     for (const worker of workers) worker.terminate();
   };
   try {

@@ -240,7 +240,7 @@ export class Beltrami {
    * flattening, welding, holes and packing. Throws BeltramiError, as its calls do.
    */
   edit(surface: Surface, options?: UnwrapOptions): Editor;
-  /** Ends the threads that `load` has started. Later calls have one. */
+  /** Ends the threads that `load` has started. Later calls have one, those of open editors too. */
   close(): void;
 }
 

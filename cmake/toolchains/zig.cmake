@@ -2,7 +2,7 @@
 #   BELTRAMI_ZIG          path of zig
 #   BELTRAMI_ZIG_TARGET   such as x86_64-linux-gnu.2.17
 #   BELTRAMI_DIST         folder with include/ (headers of CLI11, JSON for Modern C++ and so on) and zlib/ (its source)
-#   BELTRAMI_RUNTIME      of WebAssembly: folder with the C++ library that tools/dist/wasm_runtime.py makes
+#   BELTRAMI_RUNTIME      of WebAssembly: folder with the C++ library that tools/dist/wasm/runtime.py makes
 set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES BELTRAMI_ZIG BELTRAMI_ZIG_TARGET BELTRAMI_DIST BELTRAMI_RUNTIME)
 if(BELTRAMI_ZIG_TARGET MATCHES "^([a-z0-9_]+)-([a-z]+)")
   set(CMAKE_SYSTEM_PROCESSOR ${CMAKE_MATCH_1})

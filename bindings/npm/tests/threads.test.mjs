@@ -44,6 +44,15 @@ test('gives the same bits', () => {
   }
 });
 
+test('an editor goes on when the threads have ended', async () => {
+  const { cornerUvs: _, ...spot } = read('spot.obj'), beltrami = await load(undefined, { threads: 3 });
+  const editor = beltrami.edit({ ...spot, cornerUvs: one.unwrap(spot, { effort: 'quick' }).cornerUvs });
+  beltrami.close();
+  editor.update();
+  assert.equal(editor.check().injective, true);
+  editor.close();
+});
+
 test('edits, cancels and fails as one does', () => {
   const { cornerUvs: _, ...spot } = read('spot.obj');
   for (const beltrami of several) {
