@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "atlas/aim.h"
 #include "atlas/congruent.h"
 #include "atlas/measure.h"
 #include "atlas/pin_conflicts.h"
@@ -47,19 +48,6 @@ constexpr double kFlat = 2.005;
 /// terrain of voxels would fall into thousands.
 constexpr double kUnfolded = 3;
 constexpr double kAnyLength = std::numeric_limits<double>::infinity();
-
-/// Missed by more, a target is worth further tries,
-constexpr double kMissed = 1e-6;
-/// which aim lower by so many times that,
-constexpr double kMoreThanMissed = 1.1;
-/// but at no less of the excess over 2: what is left then are wrinkles that no cut takes away.
-constexpr double kLeastAim = 0.3;
-/// Of the excess over 2 that a search aimed at: with more its coarse maps tell that it can do no
-/// more, and its fine ones that open holes are worth a try; with less it has missed by a hair.
-constexpr double kNearlyMet = 1.1;
-/// Of the excess asked for, fine maps that use no more are worth a further try with shorter seams
-/// if coarse ones used more; which aims at so much of it, and at no more than so many times it.
-constexpr double kUnused = 0.96, kUsed = 0.9, kAim = 0.975, kMostAim = 2;
 
 /// Splits that are tried to bring a piece to its target which the search has missed. After the
 /// first ones it is given up where those that are left would all have to be better than the best.
@@ -127,52 +115,13 @@ Mapped open_and_map_once(const Task& task, const Open& open, double cut, bool is
   return mapped;
 }
 
-/// The excess over 2 by that which is asked for, of the mean or of the percentile.
-double excess_of(const AtlasEnergy& energy, const SeamTarget& target) {
-  const double mean = (energy.symmetric_dirichlet - 2) / (target.energy - 2);
-  return target.p99 > 0 ? std::max(mean, (energy.p99 - 2) / (target.p99 - 2)) : mean;
-}
-
 bool misses(const Mapped& mapped, const SeamTarget& target) {
   return mapped.broken > 0 || exceeds(mapped.energy.symmetric_dirichlet, target.energy) ||
          exceeds(mapped.energy.p99, target.p99);
 }
 
-/// The target at which coarse maps would leave fine ones the energy that is asked for, if what
-/// these have more than those that were made for `aimed` stays; none where a cut cannot bring it.
-std::optional<SeamTarget> aimed_lower(const SeamTarget& target, const SeamTarget& aimed,
-                                      const Mapped& mapped) {
-  const double mean = mapped.energy.symmetric_dirichlet, p99 = mapped.energy.p99;
-  const double predicted = mapped.opened.predicted_energy;
-  SeamTarget lower = target;
-  if (exceeds(predicted, aimed.energy)) {
-    if (predicted - 2 > kNearlyMet * (aimed.energy - 2)) return std::nullopt;  // it cannot do more
-    lower.energy -= kMoreThanMissed * (predicted - aimed.energy);
-    return lower.energy < aimed.energy ? std::optional(lower) : std::nullopt;
-  }
-  if (exceeds(mean, target.energy)) lower.energy -= kMoreThanMissed * (mean - predicted);
-  if (exceeds(p99, target.p99)) lower.p99 = aimed.p99 - kMoreThanMissed * (p99 - target.p99);
-  const auto is_possible = [](double aim, double asked) {
-    return asked == 0 || aim >= 2 + kLeastAim * (asked - 2);
-  };
-  const bool is_lower = lower.energy < aimed.energy || lower.p99 < aimed.p99;
-  const bool all = is_possible(lower.energy, target.energy) && is_possible(lower.p99, target.p99);
-  return is_lower && all ? std::optional(lower) : std::nullopt;
-}
-
-/// The target at which coarse maps would leave fine ones all of the energy that is allowed, where
-/// these use less of it than the coarse ones did; none where that is not worth a further try.
-std::optional<SeamTarget> aimed_higher(const SeamTarget& target, const Mapped& mapped) {
-  const double asked = target.energy - 2;
-  const double coarse = (mapped.opened.predicted_energy - 2) / asked;
-  const double fine = (mapped.energy.symmetric_dirichlet - 2) / asked;
-  const EdgeMarks& seams = mapped.opened.seams;
-  const bool is_cut = std::find(seams.begin(), seams.end(), true) != seams.end();
-  if (!is_cut || target.p99 > 0 || fine > kUnused || coarse < kUsed) return std::nullopt;
-  if (kAim * coarse <= fine) return std::nullopt;  // no higher than what the search had
-  SeamTarget higher = target;
-  higher.energy = 2 + asked * std::min(kAim * coarse / fine, kMostAim);
-  return higher;
+bool has_seams(const OpenedSurface& opened) {
+  return std::find(opened.seams.begin(), opened.seams.end(), true) != opened.seams.end();
 }
 
 /// `vertex`: as seam_length has it.
@@ -234,16 +183,18 @@ Mapped map_searched(const Task& task, const SurfacePiece& piece, const SeamTarge
     };
     Mapped mapped = open_and_map_once(task, open, cut, false, work.part(from, to), stages);
     begun = std::move(mapped.opened.search);
-    if (i == 0 && excess_of(mapped.energy, target) > kNearlyMet) {
+    const double predicted = mapped.opened.predicted_energy;
+    if (i == 0 && misses_by_far(excess_of(mapped.energy, target))) {
       const Work aside = work.part(to, to);
       std::optional<Mapped> open_holes = map_with_open_holes(task, piece, target, aside, stages);
       if (open_holes) return *std::move(open_holes);
     }
     if (misses(mapped, target)) {
-      aim = is_reached ? std::nullopt : aimed_lower(target, *aim, mapped);
+      aim = is_reached ? std::nullopt : aimed_lower(target, *aim, predicted, mapped.energy);
     } else {
       // After a try that missed, or a further one, what is left is next to nothing.
-      aim = i == 0 && uses_rest ? aimed_higher(target, mapped) : std::nullopt;
+      const bool is_worth_it = i == 0 && uses_rest && has_seams(mapped.opened);
+      aim = is_worth_it ? aimed_higher(target, predicted, mapped.energy) : std::nullopt;
       is_reached = true;
     }
     if (!best || is_better(mapped, *best, target, vertex)) best = std::move(mapped);
@@ -428,10 +379,6 @@ bool is_asked_of_whole(const AtlasInput& input, const AtlasOptions& options) {
   if (!options.target) return true;  // nothing is
   return !input.pins.empty() || options.target->max_charts > 0 || options.target->seam_budget > 0 ||
          options.weights.symmetry > 0;
-}
-
-bool exceeds(double energy, double target) {
-  return target > 0 && energy > target + kMissed;
 }
 
 Mapped map_piece(const Task& task, const SurfacePiece& piece, const Work& work,

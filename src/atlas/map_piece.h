@@ -38,9 +38,6 @@ double area_of(const SurfacePiece& piece, const Work& work);
 /// Whether something is asked that pieces cannot be held to one by one.
 bool is_asked_of_whole(const AtlasInput& input, const AtlasOptions& options);
 
-/// Whether an energy is above a target by more than rounding; none is above 0.
-bool exceeds(double energy, double target);
-
 /// Opens a piece along the seams that are searched for the target, along its creases where that
 /// leaves its faces flat and is not much longer, or along a short cut graph, and maps its charts.
 Mapped map_piece(const Task& task, const SurfacePiece& piece, const Work& work,

@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "atlas/aim.h"
 #include "atlas/congruent.h"
 #include "atlas/halves.h"
 #include "atlas/map_piece.h"

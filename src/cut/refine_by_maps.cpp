@@ -1,12 +1,10 @@
 #include "cut/refine_by_maps.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <thread>
 #include <utility>
 
@@ -14,6 +12,7 @@
 #include "base/parallel.h"
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "cut/astray.h"
 #include "cut/cut_into_charts.h"
 #include "cut/edge_marks.h"
 #include "cut/mirrored_seams.h"
@@ -27,12 +26,6 @@
 namespace beltrami {
 namespace {
 
-/// First paths of a start cost exp(kAstray sin) times as much: another start finds other seams.
-constexpr double kAstray = 0.25;
-/// Of these waves, in roots of the area.
-constexpr double kWaveLength = 1.0 / 3;
-/// Costs go astray in so many ways.
-constexpr int kAstrayStarts = 8;
 /// Steps that a search takes, about: for its progress alone.
 constexpr double kUsualSteps = 3;
 /// Share of a budget of length that coarse seams may spend: on the fine surface they are longer.
@@ -77,32 +70,6 @@ constexpr double kSpoilt = 1.003;
 constexpr double kMostExcess = 10;
 /// Branches that go at once where seams are varied, at least and at most.
 constexpr int kLeastRuin = 2, kMostRuin = 6;
-
-/// Costs for the first paths of a start: smooth, and the same wherever the surface is moved to.
-std::vector<double> costs_astray(const Surface& surface, const std::vector<double>& cost,
-                                 int number, const Work& work) {
-  if (number == 0) return cost;
-  const double scale = 1 / (kWaveLength * std::sqrt(surface_area(surface, work)));
-  Eigen::AlignedBox3d box;
-  for (const Vec3& p : surface.positions) box.extend(p);
-  const std::array<Vec3, 3> directions = {Vec3(0.36, 0.48, 0.8), Vec3(0.8, -0.6, 0),
-                                          Vec3(0.48, 0.64, -0.6)};
-  std::vector<double> factor;
-  for (const Vec3& p : surface.positions) {
-    double waves = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double pitch = 1 + 0.2 * (number * (k + 1) % 5);
-      const double turns = scale * pitch * directions[k].dot(p - box.center());
-      waves += portable::sin(2 * std::numbers::pi * turns + number * (2.1 + k));
-    }
-    factor.push_back(portable::exp(kAstray * waves));
-  }
-  std::vector<double> astray = cost;
-  for (Index h = 0; h < size_of(astray); ++h) {
-    astray[h] *= std::sqrt(factor[surface.origin(h)] * factor[surface.target(h)]);
-  }
-  return astray;
-}
 
 /// Where the model's excess is to be so that maps just have the one asked for: a bracket between
 /// those with which they had less and more.
@@ -470,7 +437,7 @@ void SeamRefinement::vary(int rounds, Attempt& best) {
     const double energy = aim(best.excess);
     const int count = kLeastRuin + round % (kMostRuin - kLeastRuin + 1);
     if (!tree_.ruin(round, count)) return;
-    extend_astray(energy, round % kAstrayStarts, false);
+    extend_astray(energy, round, false);
     shorten_seams(energy);
     if (tree_.energy() < energy) tree_.shrink(energy);
     if (tree_.cost() >= best.cost) continue;

@@ -12,11 +12,6 @@ namespace beltrami {
 /// What the steps of every run go by.
 namespace newton {
 
-/// A full step that gains more than this share of the predicted decrease, of which the model has a
-/// half, is doubled: the model is a majorizer, and a face that is nearly singular, of energy s^-2,
-/// goes from s to 4 s / 3 only. And again while each time the energy falls below a share of what it
-/// was.
-inline constexpr double kUnderrated = 0.58, kFallsFast = 0.7;
 inline constexpr double kNoGain = 1e-14;  ///< relative predicted decrease within the roundoff
 /// Of the diagonal: what nearly costs nothing gets it, growing a hundredfold up to the largest one
 /// while the system is not definite.

@@ -33,6 +33,17 @@ namespace beltrami {
 /// ARAP energy is 0.
 inline constexpr double kLeastEnergy = 0.01;
 
+/// What the length of a step goes by.
+namespace newton {
+
+/// A full step that gains more than this share of the predicted decrease, of which the model has a
+/// half, is doubled: the model is a majorizer, and a face that is nearly singular, of energy s^-2,
+/// goes from s to 4 s / 3 only. And again while each time the energy falls below a share of what it
+/// was.
+inline constexpr double kUnderrated = 0.58, kFallsFast = 0.7;
+
+}  // namespace newton
+
 /// Newton's method on the mean of a density over `faces`, weighted by rest area, and on demand on a
 /// barrier that keeps the boundary from touching itself. A Density has value(s1, s2), model(s1, s2)
 /// and `kBarrier`: whether it is infinite at s2 = 0, so that steps must stop short of singular

@@ -13,9 +13,6 @@
 namespace beltrami {
 namespace {
 
-/// Room beyond the page in which layouts are made, to tell by how much they are too high.
-constexpr double kStrip = 1.4;
-
 /// Of half the margin: by so much a layout may be higher than the page.
 constexpr double kSpare = 0.04;
 
@@ -34,9 +31,6 @@ constexpr double kFirstShare = 0.84, kShareOfFiner = 0.965;
 /// few long ones among them have not found the gaps that there are. Unless one is about as long as
 /// the page: then that is what the density ends at.
 constexpr double kPoorShare = 0.745, kLong = 0.97;
-
-/// Of a density at which a chart is longer than the page the next one.
-constexpr double kStepDown = 0.8;
 
 /// Layouts are rather too low than too high for the page.
 constexpr double kBelow = 0.005;

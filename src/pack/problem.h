@@ -109,7 +109,14 @@ struct Packed {
   double texels_per_unit = 0;
 };
 
+/// From a density at which charts do not fit to the next, while none is known at which they do.
+inline constexpr double kStepDown = 0.8;
+
 /// Densities that are tried, each lower than the one before, until margins are all that counts.
 inline constexpr int kMostStepsDown = 60;
+
+/// Sides of a page that are as high as the room in which layouts are made, to tell by how much they
+/// are too high for the page.
+inline constexpr double kStrip = 1.4;
 
 }  // namespace beltrami

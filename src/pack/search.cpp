@@ -24,15 +24,11 @@ namespace {
 /// about half a second.
 constexpr double kSteps = 1.6e8;
 
-/// Room beyond the page in which layouts are made that then are brought to its size.
-constexpr double kStrip = 1.4;
-
 /// What charts with their margins mostly fill of a page.
 constexpr double kFirstShare = 0.75;
 
-/// From a density at which charts do not fit to the next, and from one at which they do, while the
-/// other end is unknown.
-constexpr double kStepDown = 0.8, kStepUp = 1.05;
+/// From a density at which charts fit to the next, while none is known at which they do not.
+constexpr double kStepUp = 1.05;
 
 /// Disks of half the margin fill no more of a plane than this.
 constexpr double kDensestDisks = 0.9069;

@@ -62,6 +62,11 @@ BREAKS = [
         ": g has",
     ),
     (
+        "numbers.py", "src/ring/ring_faces.cpp",
+        "".join(f"constexpr double kOf{letter} = 1.5, k{letter} = {{2}};\n" for letter in "ABCDEFG"),
+        "cpp: 14 numbers",
+    ),
+    (
         "namesakes.py", "src/ring/ring_faces.h", "namespace beltrami {\nstruct DiskMesh {};\n"
         "struct DiskMesh2 final : A<B::C> {\n};\nenum class Fault : int {\n};\n}  // namespace",
         "faces.h:5: beltrami::Fault is the name of another type, at src/base/error.h:",

@@ -1,12 +1,13 @@
-"""What each special case of the flattener is worth: the program with it and without it.
+"""What each special case is worth: the program with it and without it.
 
-    ablate.py --record FILE [--without NAME ...] [--jobs N] MESH ...
-    ablate.py --table PAGE --record FILE
+    ablate.py [--of flatten|unwrap] --record FILE [--without NAME ...] [--jobs N] MESH ...
+    ablate.py [--of flatten|unwrap] --table PAGE --record FILE
     ablate.py --check
 
 A case of cases.json is a text of a source and what stands in its place without the case. A copy of
-the sources in build/ablation is compiled for each. It flattens the meshes in turns with the program
-as it is, on one thread. The record has a line for each case and mesh; a table is made of it.
+the sources in build/ablation is compiled for each. It flattens the meshes, or unwraps them, in turns
+with the program as it is, on one thread. The record has a line for each case and mesh; a table is
+made of it.
 """
 
 from __future__ import annotations
@@ -30,16 +31,21 @@ CASES = Path(__file__).parent / "cases.json"
 WORK = ROOT / "build" / "ablation"
 TREE = WORK / "tree"
 COPIED = ("src", "include", "program", "cmake", "abi", "benchmarks", "CMakeLists.txt")
-# A case stays if it is worth one of these: of the CPU and of the energy in the mean, of either on
-# one of the hardest two meshes, or a map that is injective.
-WORTH_CPU, WORTH_ENERGY, WORTH_HARDEST = 0.01, 0.0005, 0.1
+# A case stays if it is worth one of these: of the CPU and of the cost in the mean, of either on one
+# of the hardest two meshes, or a map that is injective (of an atlas: and has its target).
+WORTH_CPU, WORTH_HARDEST = 0.01, 0.1
+WORTH_COST = {"flatten": 0.0005, "unwrap": 0.005}
 HARDEST = 2
+# What is dear in a map: its energy; in an atlas: the length of its seams, by that of a texel on the
+# surface, so that seams which a higher density pays for cost nothing.
+COST = {"flatten": "Energy", "unwrap": "Seams by texel"}
+THINGS = {"flatten": "Maps", "unwrap": "Atlases"}
 
 
-def cases() -> list[dict[str, str]]:
-    """Return the table of cases."""
-    found: list[dict[str, str]] = json.loads(CASES.read_text())
-    return found
+def cases(of: str | None = None) -> list[dict[str, Any]]:
+    """Return the table of cases: those of a command, or all."""
+    found: list[dict[str, Any]] = json.loads(CASES.read_text())
+    return [case for case in found if of in (None, case.get("of", "flatten"))]
 
 
 def check() -> list[str]:
@@ -60,7 +66,7 @@ def write_if_new(path: Path, text: bytes) -> None:
     path.write_bytes(text)
 
 
-def build(case: dict[str, str] | None) -> Path:
+def build(case: dict[str, Any] | None) -> Path:
     """Compile the program without a case, or as it is, and return where it lies."""
     for name in COPIED:
         top = ROOT / name
@@ -91,13 +97,26 @@ def build(case: dict[str, str] | None) -> Path:
     return kept
 
 
-def run(program: Path, mesh: Path) -> dict[str, Any]:
-    """Flatten a mesh: its energy, its CPU without reading and writing, and its verdict."""
+def cost_of(told: dict[str, Any]) -> float | None:
+    """Return what a report tells of what is dear in a map or an atlas."""
+    if told["command"] == "flatten":
+        return told["energy"] and told["energy"]["symmetric_dirichlet"]
+    if not told["packing"]:
+        return None
+    # A surface that needs no seams has a border for all that, of about the root of its area.
+    texels = told["packing"]["texels_per_unit"] * math.sqrt(told["admitted"]["area"])
+    return (1 + told["seam_over_root_area"]) / texels
+
+
+def run(program: Path, case: dict[str, Any], mesh: Path) -> dict[str, Any]:
+    """Flatten or unwrap a mesh: the cost, the CPU without reading and writing, and the verdict."""
     folder = program / str(os.getpid())
     folder.mkdir(exist_ok=True)
     report = folder / f"{mesh.stem}.json"
     report.unlink(missing_ok=True)
-    command = [program / "beltrami", "flatten", mesh, folder / f"{mesh.stem}.ply"]
+    of = case.get("of", "flatten")
+    command = [program / "beltrami", of, mesh, folder / f"{mesh.stem}.ply"]
+    command += case.get("arguments", [])
     done = subprocess.run(
         [*command, "--threads", "1", "--quiet", "--report", report],
         env={**os.environ, "LD_LIBRARY_PATH": str(program)},
@@ -106,20 +125,20 @@ def run(program: Path, mesh: Path) -> dict[str, Any]:
         check=False,
     )
     if done.returncode not in (0, 3) or not report.exists():
-        return {"energy": None, "cpu": None, "ok": False}
+        return {"cost": None, "cpu": None, "ok": False}
     told = json.loads(report.read_text())
     spent = [s["cpu_seconds"] for s in told["stages"] if s["name"] not in ("read", "write")]
-    energy = told["energy"] and told["energy"]["symmetric_dirichlet"]
-    return {"energy": energy, "cpu": sum(spent), "ok": done.returncode == 0}
+    reached = of == "flatten" or bool(told["target"] and told["target"]["reached"])
+    return {"cost": cost_of(told), "cpu": sum(spent), "ok": done.returncode == 0 and reached}
 
 
-def measure(case: dict[str, str], usual: Path, meshes: list[Path], jobs: int) -> list[dict]:
-    """Flatten all meshes with the case and without it, in turns."""
+def measure(case: dict[str, Any], usual: Path, meshes: list[Path], jobs: int) -> list[dict]:
+    """Run all meshes with the case and without it, in turns."""
     without = build(case)
 
     def both(mesh: Path) -> dict[str, Any]:
         row = {"case": case["name"], "mesh": mesh.stem}
-        return row | {"with": run(usual, mesh), "without": run(without, mesh)}
+        return row | {"with": run(usual, case, mesh), "without": run(without, case, mesh)}
 
     with ThreadPoolExecutor(jobs) as pool:
         rows = list(pool.map(both, meshes))
@@ -133,29 +152,27 @@ def ratio(row: dict[str, Any], what: str) -> float:
     return without / with_it if with_it and without else math.nan
 
 
-def verdict(rows: list[dict[str, Any]]) -> dict[str, Any]:
+def verdict(rows: list[dict[str, Any]], of: str) -> dict[str, Any]:
     """Return what a case is worth over its meshes."""
-    hardest = sorted(rows, key=lambda row: -(row["with"]["energy"] or math.inf))[:HARDEST]
+    hardest = sorted(rows, key=lambda row: -(row["with"]["cost"] or math.inf))[:HARDEST]
     lost = sum(row["with"]["ok"] and not row["without"]["ok"] for row in rows)
     won = sum(row["without"]["ok"] and not row["with"]["ok"] for row in rows)
-    sound = [row for row in rows if not math.isnan(ratio(row, "energy"))]
+    sound = [row for row in rows if not math.isnan(ratio(row, "cost"))]
     cpu = statistics.geometric_mean(ratio(row, "cpu") for row in sound)
-    energy = statistics.geometric_mean(ratio(row, "energy") for row in sound)
-    changed = sum(row["with"]["energy"] != row["without"]["energy"] for row in rows)
+    cost = statistics.geometric_mean(ratio(row, "cost") for row in sound)
+    changed = sum(row["with"]["cost"] != row["without"]["cost"] for row in rows)
     worst = max(
-        (max(ratio(row, "cpu"), ratio(row, "energy")) for row in hardest if row in sound),
+        (max(ratio(row, "cpu"), ratio(row, "cost")) for row in hardest if row in sound),
         default=math.nan,
     )
-    stays = (
-        lost > won or cpu > 1 + WORTH_CPU or energy > 1 + WORTH_ENERGY or worst > 1 + WORTH_HARDEST
-    )
+    dear = cpu > 1 + WORTH_CPU or cost > 1 + WORTH_COST[of] or worst > 1 + WORTH_HARDEST
     return {
         "lost": lost - won,
         "cpu": cpu,
-        "energy": energy,
+        "cost": cost,
         "worst": worst,
         "changed": changed,
-        "stays": bool(changed) and stays,
+        "stays": bool(changed) and (lost > won or dear),
     }
 
 
@@ -168,35 +185,38 @@ def read(record: Path) -> dict[str, list[dict[str, Any]]]:
     return {case: list(of_mesh.values()) for case, of_mesh in rows.items()}
 
 
-def table(record: Path) -> Iterable[str]:
+def table(record: Path, of: str) -> Iterable[str]:
     """Yield the lines of the table, the most valuable case first."""
     rows = read(record)
-    told = {case["name"]: case for case in cases()}
-    judged = {name: verdict(of_case) for name, of_case in rows.items() if name in told}
-    yield "| Case | Source | Maps changed | CPU | Energy | Hardest two | Maps lost |"
+    told = {case["name"]: case for case in cases(of)}
+    judged = {name: verdict(of_case, of) for name, of_case in rows.items() if name in told}
+    things = THINGS[of]
+    yield f"| Case | Source | {things} changed | CPU | {COST[of]} | Hardest two | {things} lost |"
     yield "|---|---|---:|---:|---:|---:|---:|"
     for name in sorted(judged, key=lambda n: (-judged[n]["lost"], -judged[n]["cpu"])):
         is_worth, what = judged[name], told[name]["what"].rstrip(".")
         source = told[name]["file"].removeprefix("src/")
         yield (
             f"| {what} | `{source}` | {is_worth['changed']} of {len(rows[name])} "
-            f"| {is_worth['cpu']:.3f} | {100 * (is_worth['energy'] - 1):+.3f}% "
+            f"| {is_worth['cpu']:.3f} | {100 * (is_worth['cost'] - 1):+.3f}% "
             f"| {is_worth['worst']:.2f} | {is_worth['lost']} |"
         )
 
 
-def write_table(page: Path, record: Path) -> None:
+def write_table(page: Path, record: Path, of: str) -> None:
     """Put the table between the marks of a page."""
     text = page.read_text()
-    begin, end = "<!-- table -->\n", "<!-- end of table -->"
+    begin, end = f"<!-- table of {of} -->\n", f"<!-- end of the table of {of} -->"
     before, rest = text.split(begin)
-    page.write_text(before + begin + "\n".join(table(record)) + "\n" + end + rest.split(end)[1])
+    lines = "\n".join(table(record, of))
+    page.write_text(before + begin + lines + "\n" + end + rest.split(end)[1])
 
 
 def main() -> int:
     """Do what the arguments say."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("meshes", nargs="*", type=Path, help="disks to flatten")
+    parser.add_argument("meshes", nargs="*", type=Path, help="disks to flatten, or surfaces to unwrap")
+    parser.add_argument("--of", choices=("flatten", "unwrap"), default="flatten")
     parser.add_argument("--without", nargs="+", help="names of cases; all by default")
     parser.add_argument("--record", type=Path, help="file of lines that is added to")
     parser.add_argument("--table", type=Path, help="page whose table is written anew")
@@ -209,20 +229,20 @@ def main() -> int:
     if wrong or given.check:
         return 1 if wrong else 0
     if given.table:
-        write_table(given.table, given.record)
+        write_table(given.table, given.record, given.of)
         return 0
     usual = build(None)
-    names = given.without or [case["name"] for case in cases()]
-    for case in cases():
+    names = given.without or [case["name"] for case in cases(given.of)]
+    for case in cases(given.of):
         if case["name"] not in names:
             continue
         rows = measure(case, usual, given.meshes, given.jobs)
         if given.record:
             with given.record.open("a") as record:
                 record.writelines(json.dumps(row) + "\n" for row in rows)
-        worth = verdict(rows)
+        worth = verdict(rows, given.of)
         print(
-            f"{case['name']}: CPU {worth['cpu']:.3f}, energy {100 * (worth['energy'] - 1):+.3f}%, "
+            f"{case['name']}: CPU {worth['cpu']:.3f}, cost {100 * (worth['cost'] - 1):+.3f}%, "
             f"hardest {worth['worst']:.2f}, lost {worth['lost']}, changed {worth['changed']}: "
             f"{'stays' if worth['stays'] else 'goes'}",
             flush=True,

@@ -68,6 +68,7 @@ def build(target: Target, jobs: int) -> Path:
         place = DIST / "runtime"
         place.mkdir(parents=True, exist_ok=True)
         (place / "flags").write_text(" ".join(runtime.flags(zig)))
+        (place / "machine").write_text(" ".join(runtime.MACHINE))
         runtime.build(zig, place)
         options["BELTRAMI_RUNTIME"] = str(place)
     if not (folder / "build.ninja").exists():
