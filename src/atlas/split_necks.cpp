@@ -31,12 +31,6 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// Of a chart, in the lesser part: less is a crumb.
 constexpr double kLeastShare = 0.12;
-/// What paths differ by from the chords that they are near to.
-constexpr double kSpareShare = 0.01;
-/// Of all charts: what room a split is to free, to be looked at.
-constexpr double kLeastSaved = 0.005;
-/// By so much a split may save more than its neck promises: packings tell.
-constexpr double kHope = 1.5;
 /// Charts that are longer than a page this full are worth splitting for that alone.
 constexpr double kFull = 0.75;
 /// Sides of such a page that what is too long for it has: its diagonal is shorter.
@@ -46,25 +40,18 @@ constexpr double kOverlong = 1.5;
 /// page.
 constexpr Index kLeastFaces = 32;
 constexpr double kOverlongOfFew = 2;
-/// Of all charts: smaller ones are not split, unless they are longer than such a page.
-constexpr double kLeastPiece = 0.01;
-/// Necks of a chart that are looked at.
-constexpr int kNecks = 3;
-/// Splits that are tried next to one another, in sketches of packings.
-constexpr Index kTries = 3;
+/// Of all charts: smaller ones are not split, unless they are longer than such a page, and are left
+/// out of sketches, for they fill gaps. Where they are more than half of all, pages are full as they
+/// are.
+constexpr double kLittle = 0.005;
+/// Of the necks of a chart so many are looked at, of the splits next to one another so many are tried
+/// in sketches of packings, and of the numbers of splits that come of it so many are packed as the
+/// charts whole are, before none is made.
+constexpr int kTries = 3;
 /// Texels a side of the pages of these, and turns of their charts, at most: they are compared with
 /// one another alone.
 constexpr int kSketch = 256, kSketchTurns = 4;
-/// Of all charts: smaller ones are left out of these, for they fill gaps. Where they are more than
-/// half of all, pages are full as they are.
-constexpr double kCrumb = 1e-3;
-/// Borders in these are thinned by so many texels.
-constexpr double kThin = 0.25;
-/// Splits that may follow one another without a gain: one may pay only with the next.
-constexpr int kPatience = 2;
 constexpr Index kMostSplits = 64;
-/// Numbers of splits that are packed as the charts whole are, before none is made.
-constexpr std::size_t kMostJudged = 3;
 
 /// A chart, or a part of one.
 struct Piece {
@@ -156,11 +143,8 @@ class Splitter {
     if (large < covered_ / 2) return {};
     const double before = sketched(alive_, work_);
     utilisation_ = before;
-    density_ = std::sqrt(before * options_.max_pages / covered_) * options_.resolution;
-    parallel_for(work_, size_of(alive_), 1, [&](std::int64_t i, std::int64_t) {
-      find_necks_of(pieces_[alive_[i]]);
-      thin(pieces_[alive_[i]].outline, kThin / density_);
-    });
+    parallel_for(work_, size_of(alive_), 1,
+                 [&](std::int64_t i, std::int64_t) { find_necks_of(pieces_[alive_[i]]); });
     std::vector<double> net{before};
     double cost = split_overlong();
     if (!splits_.empty()) {
@@ -170,8 +154,7 @@ class Splitter {
     }
     const std::size_t first = splits_.size();
     std::size_t best = net.back() > before ? first : 0;
-    while (splits_.size() < std::max(best, first) + kPatience + 1 &&
-           size_of(splits_) < kMostSplits) {
+    while (splits_.size() <= std::max(best, first) && size_of(splits_) < kMostSplits) {
       if (work_.out_of_time() || !may_have_more()) break;
       const std::optional<double> found = split_best(cost);
       if (!found) break;
@@ -230,19 +213,17 @@ class Splitter {
     const AtlasChart& chart = *piece.chart;
     const bool is_sound = !piece.map->error && piece.map->outcome < Outcome::kNotInjective;
     const bool overlong = is_overlong(piece);
-    const bool is_worth_it = overlong || piece.outline.area > kLeastPiece * covered_;
+    const bool is_worth_it = overlong || piece.outline.area > kLittle * covered_;
     const bool stays = !overlong && (chart.real_faces < kLeastFaces || !has_seam(chart));
     if (!is_sound || !is_worth_it || stays) return;
     // What is too long takes a page for itself: pages may be full once it is split.
     const double filled = overlong ? kFull : utilisation_;
-    const NeckOptions options{.worth = kHope * worth(filled * filled / covered_),
+    const NeckOptions options{.worth = worth(filled * filled / covered_),
                               .page = page_area(),
-                              .least_share = kLeastShare + kSpareShare,
-                              .most = kNecks};
+                              .least_share = kLeastShare,
+                              .most = kTries};
     piece.necks =
         find_necks(chart.chart.mesh, piece.map->uvs, costs(chart), chart.real_faces, options);
-    std::erase_if(piece.necks,
-                  [&](const Neck& neck) { return neck.saved < kLeastSaved * covered_; });
     piece.is_used.assign(piece.necks.size(), false);
   }
 
@@ -290,7 +271,7 @@ class Splitter {
   }
 
   bool is_crumb(const Piece& piece) const {
-    return piece.map->error || (piece.outline.area <= kCrumb * covered_ && !is_overlong(piece));
+    return piece.map->error || (piece.outline.area <= kLittle * covered_ && !is_overlong(piece));
   }
 
   double sketched(const std::vector<Index>& alive, const Work& work) const {
@@ -329,7 +310,7 @@ class Splitter {
       for (Index n = 0; n < size_of(piece.necks); ++n) {
         const Neck& neck = piece.necks[n];
         const double saved = worth(utilisation_ * utilisation_ * neck.saved / covered_);
-        if (!piece.is_used[n] && kHope * saved > neck.cost && cost + neck.cost <= room_) {
+        if (!piece.is_used[n] && saved > neck.cost && cost + neck.cost <= room_) {
           found.push_back({saved - neck.cost, p, n});
         }
       }
@@ -377,10 +358,7 @@ class Splitter {
       for (const Index p : alive_) {
         if (p != trial.candidate.piece) outlines.push_back(pieces_[p].outline);
       }
-      for (Piece& part : trial.parts) {
-        thin(part.outline, kThin / density_);
-        outlines.push_back(part.outline);
-      }
+      for (const Piece& part : trial.parts) outlines.push_back(part.outline);
       trial.utilisation = pack_outlines(std::move(outlines), options_, work_.aside()).utilisation;
       const Neck& neck = pieces_[trial.candidate.piece].necks[trial.candidate.neck];
       trial.net = trial.utilisation - neck.cost / worth(1);
@@ -391,7 +369,7 @@ class Splitter {
     return best.utilisation;
   }
 
-  /// Lets a piece give way to two, whose outlines are thin.
+  /// Lets a piece give way to two.
   void split(Index piece, Index neck, std::vector<Piece> parts) {
     splits_.push_back(
         {piece, {size_of(pieces_), size_of(pieces_) + 1}, pieces_[piece].necks[neck].cost});
@@ -434,7 +412,6 @@ class Splitter {
         ++i;
         continue;
       }
-      for (Piece& part : parts) thin(part.outline, kThin / density_);
       split(p, chosen, std::move(parts));
       cost += splits_.back().cost;
     }
@@ -448,7 +425,7 @@ class Splitter {
   double root_ = 0;                       // of the area of the surface
   double covered_ = 0;                    // area of all maps
   double room_ = kFar;                    // for seams
-  double utilisation_ = 0, density_ = 1;  // before any split
+  double utilisation_ = 0;                // before any split
   std::vector<Piece> pieces_;
   Index whole_ = 0;  // of these: charts that are not split, the first ones
   std::vector<Index> alive_;
@@ -486,7 +463,7 @@ Pages pack_split_maps(const Admitted& admitted, const SplitRules& rules, const P
   }
   Packed best = packed(0, kFound, kWholePacked);
   SplitFigures chosen{best.utilisation, 0, 0};
-  for (const Index count : std::span(counts).first(std::min(counts.size(), kMostJudged))) {
+  for (const Index count : std::span(counts).first(std::min<std::size_t>(counts.size(), kTries))) {
     if (work.out_of_time()) break;
     Packed trial = packed(count, kWholePacked, 1);
     const double gained = trial.utilisation - best.utilisation;

@@ -33,12 +33,7 @@ constexpr double kSpent = 0.97;
 /// Relative decrease at which maps end that judge: descents that end sooner may stop on a plateau.
 constexpr double kMostTolerance = 1e-3;
 /// A map that lies on itself on more of its area is parted. Contact mends the rest.
-constexpr double kMostOverlap = 0.03;
-/// Share of the excess asked for that contact may cost. Where it costs more, the map is parted,
-/// too.
-constexpr double kWorthContact = 0.06;
-/// Share of the area that then counts as lying on itself.
-constexpr double kLeastOverlap = 0.005;
+constexpr double kMostOverlap = 0.005;
 /// Maps with more times the excess asked for are of cuts that will grow: not worth parting yet.
 constexpr double kWorthParting = 1.3;
 /// Relative gain of length below which seams are not worth another map.
@@ -47,29 +42,20 @@ constexpr double kWorthMapping = 1e-3;
 constexpr int kMostRounds = 8;
 /// Shares of the excess asked for: with so much a further round gains nothing...
 constexpr double kNear = 0.98;
-/// ... and settling, which takes smaller steps, goes on to here.
+/// ... and settling, which takes smaller steps, goes on to here. All steps aim at it, and seams that
+/// promise to be longer by as much have been spoilt on the way: half a step is tried then.
 constexpr double kFull = 0.997;
-/// Share of the excess asked for that the next target of the model aims at.
-constexpr double kAim = 0.99;
-/// Factors by which the excess of the model is corrected in a round, the least and the greatest.
-constexpr double kLeastStep = 0.3, kMostStep = 2;
-/// The model's excess is not to be believed below.
+/// Factor by which the excess of the model is corrected in a round, up or down, at most.
+constexpr double kMostStep = 2;
+/// Excesses, of the model or by the one asked for, are not to be believed below.
 constexpr double kLeastExcess = 1e-4;
-/// Excesses of the model that differ by a lesser factor are one.
-constexpr double kSame = 1.02;
-/// Least excess, by the one asked for, from which it is told what seams would cost that just reach
-/// it.
-constexpr double kLeastShare = 1e-3;
-/// Excesses, by the one asked for, outside of which maps say little of where the model is to aim.
-constexpr double kDoubtful = 0.9, kFarAbove = 3;
-/// Seams that promise to be longer by this factor have been spoilt on the way to the excess asked
-/// for: half a step is tried.
-constexpr double kSpoilt = 1.003;
-/// The excess of a face counts up to that where the model is taught: a needle says nothing of what
-/// is around it.
-constexpr double kMostExcess = 10;
-/// Branches that go at once where seams are varied, at least and at most.
-constexpr int kLeastRuin = 2, kMostRuin = 6;
+/// Branches that go at once where seams are varied.
+constexpr int kRuined = 4;
+
+/// By how much the excess of the model is to change where maps have so much of the one asked for.
+double step_for(double map_excess) {
+  return std::clamp(kFull / std::max(map_excess, kLeastExcess), 1 / kMostStep, kMostStep);
+}
 
 /// Where the model's excess is to be so that maps just have the one asked for: a bracket between
 /// those with which they had less and more.
@@ -84,13 +70,11 @@ class ModelAim {
     } else {
       b.high = std::min({b.high, model_excess, std::max(aimed, b.low)});
     }
-    const double step =
-        std::clamp(kAim / std::max(map_excess, kLeastExcess), kLeastStep, kMostStep);
-    next_ = is_closed() ? std::sqrt(b.low * b.high) : step * model_excess;
+    next_ = is_closed() ? std::sqrt(b.low * b.high) : step_for(map_excess) * model_excess;
   }
 
   /// Whether the next one would be the same.
-  bool is_found() const { return is_closed() && bracket_.is_within(kSame); }
+  bool is_found() const { return is_closed() && bracket_.is_within(1 / kNear); }
 
   double next() const { return next_; }
 
@@ -113,7 +97,7 @@ bool Attempt::is_better_than(const Attempt& other) const {
 }
 
 double Attempt::promised() const {
-  return cost * portable::exp(kSeamPrice * portable::log(std::max(excess, kLeastShare)));
+  return cost * portable::exp(kSeamPrice * portable::log(std::max(excess, kLeastExcess)));
 }
 
 SeamRefinement::SeamRefinement(const SeamSurface& coarse, KnownMaps& known, AnchoredSeams seams,
@@ -217,8 +201,8 @@ LocalMaps SeamRefinement::map(const LocalMaps* before) const {
                      known_, here());
 }
 
-/// Parts the charts that lie on themselves on more of their area. Whether there was one.
-bool SeamRefinement::part_overlaps(const LocalMaps& maps, double tolerance) {
+/// Parts the charts that lie on themselves. Whether there was one.
+bool SeamRefinement::part_overlaps(const LocalMaps& maps) {
   EdgeMarks seams = tree_.seams();
   bool parted = false;
   Index charts = size_of(maps.uvs);
@@ -228,7 +212,7 @@ bool SeamRefinement::part_overlaps(const LocalMaps& maps, double tolerance) {
     const auto surface_halfedge = [&](Index h) { return 3 * chart.input_face[h / 3] + h % 3; };
     for (Index h = 0; h < size_of(cost); ++h) cost[h] = path_cost_[surface_halfedge(h)];
     const OverlapSplit split =
-        split_overlaps(chart.mesh, maps.uvs[c], cost, tolerance, work_.aside());
+        split_overlaps(chart.mesh, maps.uvs[c], cost, kMostOverlap, work_.aside());
     charts += split.parts - 1;
     if (target_.max_charts > 0 && charts > target_.max_charts) {
       charts -= split.parts - 1;
@@ -275,24 +259,20 @@ bool SeamRefinement::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
   maps = map(maps.uvs.empty() ? nullptr : &maps);
   attempt.excess = missed_by(maps);
   if (attempt.excess > kWorthParting && !is_last) return false;
-  LocalMaps apart;
-  for (const double overlap : {kMostOverlap, kLeastOverlap}) {
-    if (part_overlaps(maps, overlap)) {
-      if (mirror_ != nullptr) mirror_seams();
-      maps = map(&maps);
-    }
-    const double free = missed_by(maps);
-    if (free > 1 && !is_last) {  // contact can only add to it
-      const double guessed = free * contact_.factor;
-      attempt = {{tree_.seams(), tree_.anchors()}, tree_.cost(), maps.energy, guessed, {}, true};
-      return true;
-    }
-    const LocalMaps* const before = contact_.maps.uvs.empty() ? nullptr : &contact_.maps;
-    apart = with_contact(maps, coarse_.real_faces, tolerance(), before, known_, here());
-    contact_.maps = apart;
-    contact_.factor = std::max(1.0, missed_by(apart) / std::max(free, kLeastShare));
-    if (apart.energy - maps.energy <= kWorthContact * (target_.energy - 2)) break;
+  if (part_overlaps(maps)) {
+    if (mirror_ != nullptr) mirror_seams();
+    maps = map(&maps);
   }
+  const double free = missed_by(maps);
+  if (free > 1 && !is_last) {  // contact can only add to it
+    const double guessed = free * contact_.factor;
+    attempt = {{tree_.seams(), tree_.anchors()}, tree_.cost(), maps.energy, guessed, {}, true};
+    return true;
+  }
+  const LocalMaps* const before = contact_.maps.uvs.empty() ? nullptr : &contact_.maps;
+  LocalMaps apart = with_contact(maps, coarse_.real_faces, tolerance(), before, known_, here());
+  contact_.maps = apart;
+  contact_.factor = std::max(1.0, missed_by(apart) / std::max(free, kLeastExcess));
   attempt = {{tree_.seams(), tree_.anchors()},
              tree_.cost(),
              apart.energy,
@@ -304,7 +284,7 @@ bool SeamRefinement::judge(bool is_last, LocalMaps& maps, Attempt& attempt) {
 /// The energy of the model at which maps would have nearly that asked for, if it errs as it does
 /// for the seams that it is at, whose maps have `excess`.
 double SeamRefinement::aim(double excess) const {
-  return 2 + (tree_.energy() - 2) * kAim / std::clamp(excess, kDoubtful, kFarAbove);
+  return 2 + (tree_.energy() - 2) * step_for(excess);
 }
 
 /// Brings seams to where maps just have the excess asked for: ends of branches go, or paths are
@@ -314,8 +294,7 @@ void SeamRefinement::settle(Attempt now, LocalMaps& maps, Attempt& best) {
   for (int i = 0; i < effort_.settling && !work_.out_of_time(); ++i) {
     if (now.excess <= 1 && now.excess >= kFull) return;
     tree_.take(now.seams.seams, now.seams.anchors);
-    const double whole = std::clamp(kFull / now.excess, kLeastStep, kMostStep);
-    const double goal = 2 + (tree_.energy() - 2) * (1 + step * (whole - 1));
+    const double goal = 2 + (tree_.energy() - 2) * (1 + step * (step_for(now.excess) - 1));
     if (now.excess <= 1) {
       tree_.shrink(goal);
       if (tree_.cost() >= now.cost) return;
@@ -326,7 +305,7 @@ void SeamRefinement::settle(Attempt now, LocalMaps& maps, Attempt& best) {
     Attempt attempt;
     if (!judge(false, maps, attempt)) return;
     if (attempt.is_better_than(best)) best = attempt;
-    if (attempt.promised() > kSpoilt * now.promised()) {
+    if (kFull * attempt.promised() > now.promised()) {
       step /= 2;
     } else {
       now = std::move(attempt);
@@ -345,7 +324,7 @@ void SeamRefinement::calibrate(const LocalMaps& maps) {
     const double area = triangle_area(p[i], p[j], p[k]);
     whole += area;
     if (!std::isfinite(maps.energies[f])) continue;
-    const double over = std::clamp(maps.energies[f] - 2, 0.0, kMostExcess);
+    const double over = std::max(maps.energies[f] - 2, 0.0);
     for (const Index v : surface.faces[f]) excess[v] += over * area / 3;
   }
   if (!(whole > 0)) return;
@@ -435,8 +414,7 @@ void SeamRefinement::vary(int rounds, Attempt& best) {
   for (int round = 1; round <= rounds && best.excess <= 1 && !work_.out_of_time(); ++round) {
     tree_.take(best.seams.seams, best.seams.anchors);
     const double energy = aim(best.excess);
-    const int count = kLeastRuin + round % (kMostRuin - kLeastRuin + 1);
-    if (!tree_.ruin(round, count)) return;
+    if (!tree_.ruin(round, kRuined)) return;
     extend_astray(energy, round, false);
     shorten_seams(energy);
     if (tree_.energy() < energy) tree_.shrink(energy);

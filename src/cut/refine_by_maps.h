@@ -91,7 +91,7 @@ class SeamRefinement {
   double cost_with_turns() const;
   double tolerance() const;
   LocalMaps map(const LocalMaps* before) const;
-  bool part_overlaps(const LocalMaps& maps, double tolerance);
+  bool part_overlaps(const LocalMaps& maps);
   void mirror_seams();
   double missed_by(const LocalMaps& maps) const;
   bool judge(bool is_last, LocalMaps& maps, Attempt& attempt);

@@ -9,6 +9,7 @@
 #include "base/types.h"
 #include "base/vectors.h"
 #include "linear/cholesky/native_solver.h"
+#include "linear/cholesky/symbolic.h"
 
 namespace beltrami {
 namespace {
@@ -16,19 +17,16 @@ namespace {
 // ---- Measured ----------------------------------------------------------------------------------
 
 /// Numbers of the factor per row and log2(rows). By minimum degree, which is worst where all
-/// vertices are alike: 2.0 to 2.7 on scans, 4.7 on regular grids. By nested dissection in space,
-/// and in the plane: composite majorization starts from Tutte's embedding, which squeezes most of
-/// the mesh.
-constexpr double kFillByDegree = 2.7, kFillOfRegular = 2.5;
-constexpr double kFillInSpace = 2.75, kFillInPlane = 3.5;
+/// vertices are alike, 2.0 to 2.7 on scans and 4.7 on regular grids: by so much more there. By
+/// nested dissection in space no more than these; and in the plane, for composite majorization
+/// starts from Tutte's embedding, which squeezes most of the mesh.
+constexpr double kFill = 2.75, kFillOfRegular = 2.5, kFillInPlane = 3.5;
 /// Bytes per row of what describes the factor: supernodes and their rows.
 constexpr double kSymbolic = 48;
 /// Numbers per row in the update matrices of a factorization: on one thread, and on each other.
 constexpr double kFronts = 12, kFrontsOfThread = 6.5;
 /// Of a factor in single precision, what 16 bits per entry below the diagonal take.
 constexpr double kOfCompact = 0.5;
-/// Threads that a factorization keeps busy: it has so many tasks.
-constexpr double kMostTasks = 96;
 /// The global fix, per face: the corners' entries twice, as they come and scaled; and the factor,
 /// with room for as much again while it is made, in numbers of a factor by minimum degree.
 constexpr double kEntriesOfFace = 2 * 6 * 16, kFactorOfFix = 2 * (8 + 4);
@@ -51,7 +49,7 @@ double log2_of(double x) {
 /// more rows, though dissection is better than minimum degree, and left to large systems.
 double factor_entries(double rows, double regular, double fill) {
   const auto by_degree = [regular](double count) {
-    return (kFillByDegree + kFillOfRegular * regular) * count * log2_of(count + 2);
+    return (kFill + kFillOfRegular * regular) * count * log2_of(count + 2);
   };
   if (rows < kLeastDissected) return by_degree(rows);
   return std::max(fill * rows * log2_of(rows), by_degree(kLeastDissected));
@@ -91,7 +89,7 @@ double context_bytes(const MeshCounts& n) {
 }
 
 System system_bytes(const MeshCounts& n, int block, Precision precision, int threads) {
-  const double fill = block == 1 ? kFillInSpace : kFillInPlane;
+  const double fill = block == 1 ? kFill : kFillInPlane;
   const bool single = precision == Precision::kSingle;
   const double scalar = single ? sizeof(float) : sizeof(double);
   const double rows = n.vertices, squares = rows * block * block;
@@ -102,7 +100,7 @@ System system_bytes(const MeshCounts& n, int block, Precision precision, int thr
   const double factor = block * block * factor_bytes(n, precision, fill);
   const double scaled = single ? entries * kReal + rows * block * 2 * kReal : 0;
   const double kept = matrix + pattern + rows * kSymbolic + scaled + factor;
-  const double others = std::min(threads - 1.0, kMostTasks);
+  const double others = std::min(threads - 1, kMostTasks);
   const double factorizing =
       entries * scalar + squares * scalar * (kFronts + kFrontsOfThread * others);
   const double solving = rows * kUv * (single ? kSolveFieldsOfSingle : kSolveFields);
@@ -112,7 +110,7 @@ System system_bytes(const MeshCounts& n, int block, Precision precision, int thr
 double global_fix_bytes(const MeshCounts& n) {
   // The ring makes it a few faces and vertices more.
   const double entries =
-      (kFillByDegree + kFillOfRegular * n.regular) * n.vertices * log2_of(n.vertices + 2);
+      (kFill + kFillOfRegular * n.regular) * n.vertices * log2_of(n.vertices + 2);
   return (n.faces + 2 * n.boundary) * (sizeof(Triangle) + kEntriesOfFace) + 8 * n.vertices * kUv +
          kFactorOfFix * entries;
 }

@@ -17,6 +17,9 @@ constexpr Index kLeastRatio = 8;
 constexpr Index kQuarter = 4, kTwentieth = 20;
 constexpr Index kLeastCoarsest = 1000, kFairCoarsest = 2500, kMostCoarsest = 5000;
 
+/// On the way to pins: faces that may be moved in all steps together, and the bounds of these.
+constexpr Index kMostPinFaceSteps = 6'000'000, kLeastPinSteps = 15, kMostPinSteps = 60;
+
 /// Where a factor is cheap, and on any level. For patches no more than 2%, up to which a repair has
 /// regions before them.
 constexpr Bearable kWhereCheap{5e-2, 2e-2}, kOnAnyLevel{1e-2, 1e-2};
@@ -44,6 +47,10 @@ Index coarse_faces(Index faces, std::int64_t asked) {
 Index coarsest_faces(Index faces) {
   const Index most = std::clamp(faces / kTwentieth, kFairCoarsest, kMostCoarsest);
   return std::clamp(faces / kQuarter, kLeastCoarsest, most);
+}
+
+Index most_pin_steps(Index faces) {
+  return std::clamp(kMostPinFaceSteps / faces, kLeastPinSteps, kMostPinSteps);
 }
 
 bool has_levels(Index faces, Index coarse, const ChartOptions& options) {

@@ -53,6 +53,10 @@ Index coarsest_faces(Index faces);
 /// promise is not.
 bool has_levels(Index faces, Index coarse, const ChartOptions& options);
 
+/// Steps on the way of a map of so many faces to its pins: fewer of a large one, where each takes
+/// longer.
+Index most_pin_steps(Index faces);
+
 // ---- Levels
 // --------------------------------------------------------------------------------------
 

@@ -19,6 +19,7 @@
 #include "mesh/boundary.h"
 #include "mesh/rest_shape.h"
 #include "multilevel/descent.h"
+#include "multilevel/policy.h"
 #include "pins/line_similarity.h"
 #include "pins/pin_field.h"
 #include "pins/similarity.h"
@@ -29,8 +30,6 @@ namespace {
 
 /// Of the way to the first face without area, or the first touch: the rest is left to relax.
 constexpr double kShareOfWay = 0.6;
-constexpr Index kMostSteps = 60, kLeastMostSteps = 15;
-constexpr Index kMostFaceSteps = 6'000'000;  ///< of large maps fewer
 /// Of the way to the first touch: pins may have the boundary touch itself.
 constexpr double kAllButThere = 1 - 1e-9;
 constexpr double kShortStep = 0.01;  ///< of what remains
@@ -299,10 +298,10 @@ bool WayToPins::embed(std::vector<Vec2>& uvs) const {
 WayToPins::End WayToPins::walk(bool simple, std::vector<Vec2>& uvs) const {
   PinField field(mesh_, vertices_, work_);
   std::vector<Vec2> trial(uvs.size());
-  const int most = std::clamp(kMostFaceSteps / mesh_.face_count(), kLeastMostSteps, kMostSteps);
+  const Index most = most_pin_steps(mesh_.face_count());
   int short_steps = 0;
   bool touched = false;
-  for (int step = 0; step < most && short_steps < kMostShortSteps; ++step) {
+  for (Index step = 0; step < most && short_steps < kMostShortSteps; ++step) {
     const Work inner = work_.part(kThere * step / most, kThere * step / most);
     inner.report(0);
     const std::vector<Vec2> direction =

@@ -196,9 +196,7 @@ std::vector<int> resolve_merges(std::vector<Node>& nodes) {
   return final_of;
 }
 
-// Subtrees of about this share of all work are the tasks of the threads; smaller matrices than
-// kLeastTaskCost nanoseconds are not worth a second thread.
-constexpr double kTaskShare = 1.0 / 48;
+/// Nanoseconds: smaller matrices are not worth a second thread.
 constexpr double kLeastTaskCost = 3e5;
 
 /// Which nodes lie above the tasks, and in which order the nodes are numbered.
@@ -225,7 +223,7 @@ Numbering number_nodes(const std::vector<Node>& nodes, int scale) {
     if (nodes[s].parent != kRoot) below[nodes[s].parent] += below[s];
     parent.push_back(nodes[s].parent == kRoot ? kRoot : compact[nodes[s].parent]);
   }
-  const double most = std::max(kTaskShare * total, kLeastTaskCost);
+  const double most = std::max(2 * total / kMostTasks, kLeastTaskCost);
   Numbering result;
   std::vector<int> top;
   for (const int c : postorder(parent)) {

@@ -10,6 +10,10 @@
 
 namespace beltrami {
 
+/// Threads that a factorization keeps busy: it has some half as many tasks or more, which then come to
+/// no more than so many.
+inline constexpr int kMostTasks = 96;
+
 /// The supernodes of L for a matrix of square blocks (all counts and numbers here are of block
 /// rows) in the order of elimination. A supernode is a run of columns that share the rows below
 /// them; stored explicitly, it holds some zeros where that costs less than one supernode more.
