@@ -41,12 +41,12 @@ constexpr double kOverlong = 1.5;
 constexpr Index kLeastFaces = 32;
 constexpr double kOverlongOfFew = 2;
 /// Of all charts: smaller ones are not split, unless they are longer than such a page, and are left
-/// out of sketches, for they fill gaps. Where they are more than half of all, pages are full as they
-/// are.
+/// out of sketches, for they fill gaps. Where they are more than half of all, pages are full as
+/// they are.
 constexpr double kLittle = 0.005;
-/// Of the necks of a chart so many are looked at, of the splits next to one another so many are tried
-/// in sketches of packings, and of the numbers of splits that come of it so many are packed as the
-/// charts whole are, before none is made.
+/// Of the necks of a chart so many are looked at, of the splits next to one another so many are
+/// tried in sketches of packings, and of the numbers of splits that come of it so many are packed
+/// as the charts whole are, before none is made.
 constexpr int kTries = 3;
 /// Texels a side of the pages of these, and turns of their charts, at most: they are compared with
 /// one another alone.
@@ -422,10 +422,10 @@ class Splitter {
   const SplitRules& rules_;
   PackOptions options_;  // of sketches
   const Work work_;
-  double root_ = 0;                       // of the area of the surface
-  double covered_ = 0;                    // area of all maps
-  double room_ = kFar;                    // for seams
-  double utilisation_ = 0;                // before any split
+  double root_ = 0;         // of the area of the surface
+  double covered_ = 0;      // area of all maps
+  double room_ = kFar;      // for seams
+  double utilisation_ = 0;  // before any split
   std::vector<Piece> pieces_;
   Index whole_ = 0;  // of these: charts that are not split, the first ones
   std::vector<Index> alive_;

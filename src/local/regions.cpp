@@ -245,9 +245,9 @@ std::vector<std::optional<Patch>> Regions::treat(const std::vector<RestTriangle>
   return treated;
 }
 
-RelaxedRegions relax_regions(Energy energy, const DiskMesh& mesh,
-                             const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
-                             const std::vector<Index>& faces, int rings, const Work& work) {
+std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
+                           const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
+                           const std::vector<Index>& faces, int rings, const Work& work) {
   const Index most = std::max(kMostTogether, mesh.vertex_count() / kTogetherOf);
   const RegionSize size{rings, most, kMostTogether};
   const Regions regions(mesh, faces, size, work);
@@ -256,32 +256,24 @@ RelaxedRegions relax_regions(Energy energy, const DiskMesh& mesh,
   options.tolerance = kTolerance;
   options.max_iterations = kNewtonSteps;
   options.proxy_steps = 0;  // the map is near its minimum but for some faces
-  std::vector<double> gains(regions.count(), 0);
-  const auto minimise = [&](Patch& patch, Index region, const Work& on) {
+  const auto minimise = [&](Patch& patch, Index, const Work& on) {
     const auto descend = [&] {
       return minimise_energy(patch.faces, patch.rest, patch.fixed, patch.uvs, options, on);
     };
-    NewtonResult done = descend();
     // Faces that are positive by exact predicates may have no positive determinant in floats.
-    if (!std::isfinite(done.energies.front())) {
+    if (!std::isfinite(descend().energies.front())) {
       if (!untangle(patch.faces, patch.rest, patch.fixed, patch.uvs, on)) return false;
-      done = descend();
+      descend();
     }
-    double area = 0;
-    for (const RestTriangle& r : patch.rest) area += r.area();
-    const double gain = area * (done.energies.front() - done.energies.back());
-    if (std::isfinite(gain)) gains[region] = gain;
     return non_positive_faces(patch.faces, patch.uvs, on).empty();
   };
   std::vector<std::optional<Patch>> patches = regions.treat(rest, uvs, minimise, work);
   PatchWork taken(mesh, uvs);
-  RelaxedRegions relaxed;
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (!patches[i] || !taken.take(*patches[i])) continue;
-    ++relaxed.changed;
-    relaxed.gain += gains[i];
+  std::int64_t changed = 0;
+  for (std::optional<Patch>& patch : patches) {
+    if (patch && taken.take(*patch)) ++changed;
   }
-  return relaxed;
+  return changed;
 }
 
 }  // namespace beltrami

@@ -66,20 +66,14 @@ class Regions {
   std::vector<Index> of_;            ///< per vertex: its place there, or below 0
 };
 
-/// What relax_regions did.
-struct RelaxedRegions {
-  std::int64_t changed = 0;  ///< regions
-  double gain = 0;           ///< by which the integral of the energy has fallen
-};
-
 /// Minimises the energy in the regions within `rings` rings of the faces, in place, to a relative
 /// decrease of 0.1% in a step, in 30 steps at most. Large regions are parted, so that none
 /// keeps one thread long: neighbours change anyway. A region that moves boundary
 /// vertices is taken back if it adds boundary crossings. Faces that are singular in floats are
-/// untangled first, and what that gains is not counted. Ends where the time is up. Precondition:
+/// untangled first. Ends where the time is up. Returns how many regions have changed. Precondition:
 /// the faces of the mesh are positive by exact predicates; they stay so.
-RelaxedRegions relax_regions(Energy energy, const DiskMesh& mesh,
-                             const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
-                             const std::vector<Index>& faces, int rings, const Work& work);
+std::int64_t relax_regions(Energy energy, const DiskMesh& mesh,
+                           const std::vector<RestTriangle>& rest, std::vector<Vec2>& uvs,
+                           const std::vector<Index>& faces, int rings, const Work& work);
 
 }  // namespace beltrami

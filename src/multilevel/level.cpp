@@ -128,9 +128,8 @@ bool mend_level(const Level& level, const RepairOptions& how, const ChartOptions
   if (!mend(level.problem, how, options, work, map)) return false;
   if (flipped.empty()) return true;
   run_stage("repair", work, map.statistics.stages, [&](StageStatistics&, const Work& inner) {
-    const RelaxedRegions relaxed = relax_regions(options.energy, mesh, level.problem.rest, map.uvs,
-                                                 flipped, kRegionRings, inner);
-    map.statistics.cleaned_patches += relaxed.changed;
+    map.statistics.cleaned_patches += relax_regions(options.energy, mesh, level.problem.rest,
+                                                    map.uvs, flipped, kRegionRings, inner);
   });
   return true;
 }

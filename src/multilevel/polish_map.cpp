@@ -16,8 +16,8 @@
 // cleaning of outliers          -                     after each that is held up, and at the end
 //   or of regions                                     if a step came since
 //
-// On a level that still gains much after three rounds with regions, its own Hessian takes the place
-// of that factor.
+// On a level that still gains much by a round with regions, its own Hessian takes the place of that
+// factor.
 //
 // Held up: nearly singular faces would shorten the steps. Patches around these are optimised then,
 // or whole regions where they are many, each of which a patch would leave to its neighbours.
@@ -70,23 +70,14 @@ constexpr int kRings = 8;
 /// Predicted relative decrease from which on Newton steps of their own are worth their cost.
 constexpr double kMuchLeft = 1e-2;
 constexpr int kNewtonSteps = 10;
-/// A map with no more times the distortion of the coarser mesh has lost nothing on the way.
-constexpr double kNothingLost = 1.002;
 /// Relative decrease of the energy that is worth something: another fit of a factor, a Hessian, the
 /// ways of a rough map, one more Newton step.
 constexpr double kWorthIt = 2e-3;
-/// Faces in the way, as a share of all and as a number, with more of which a map is rough: patches
-/// would hold each other up, and regions around the worst of them are relaxed instead.
-constexpr double kManyOf = 3e-4, kMany = 10;
+/// Faces in the way, as a share of all, with more of which a map is rough: patches would hold each
+/// other up, and regions around the worst of them are relaxed instead.
+constexpr double kManyOf = 3e-4;
 /// Share of the faces that regions are put around at once.
 constexpr double kMostRelaxed = 1e-2;
-/// After so many steps that regions follow the Hessian may be worth its cost, where it is to be
-/// had.
-constexpr int kFirstSteps = 3;
-/// Where regions gain more of the energy, what is left of it is measured: a difference may be
-/// rounding.
-constexpr double kMostlyGained = 0.5;
-
 /// What a length of the polish means. Decreases are relative ones of the energy.
 struct Bounds {
   double enough;       ///< predicted decrease at which it ends
@@ -183,9 +174,9 @@ std::vector<Index> faces_of(const std::vector<SingularStep>& steps) {
   return faces;
 }
 
-/// Whether these are more faces than a share of all, and than a few.
-bool are_many(const std::vector<SingularStep>& faces, double share_of, const DiskMesh& mesh) {
-  return static_cast<double>(faces.size()) > std::max(kMany, share_of * mesh.face_count());
+/// Whether these are many of the faces of a mesh.
+bool are_many(const std::vector<SingularStep>& faces, const DiskMesh& mesh) {
+  return static_cast<double>(faces.size()) > kManyOf * mesh.face_count();
 }
 
 /// Relaxes what is worst in a map that is rough. Returns whether there was any.
@@ -220,13 +211,8 @@ double relax(const Setting& setting, std::vector<SingularStep> faces, State& sta
   std::sort(faces.begin(), faces.end(), is_first);
   const double done = share(state.iterations);
   const Work inner = setting.work.part(done, done);
-  const RelaxedRegions relaxed = relax_regions(setting.options.energy, mesh, setting.fine.rest,
-                                               state.uvs, faces_of(faces), kRings, inner);
-  state.cleaned_patches += relaxed.changed;
-  const double gain = relaxed.gain / setting.area;
-  if (std::isfinite(state.energy) && gain <= kMostlyGained * state.energy) {
-    return state.energy - gain;
-  }
+  state.cleaned_patches += relax_regions(setting.options.energy, mesh, setting.fine.rest, state.uvs,
+                                         faces_of(faces), kRings, inner);
   return mean_energy(setting.options.energy, mesh.faces, setting.fine.rest, state.uvs, inner);
 }
 
@@ -240,12 +226,12 @@ void clear_way(const Setting& setting, State& state) {
   const std::vector<SingularStep>& blocking = state.last.blocking;
   const DiskMesh& mesh = *setting.fine.mesh;
   const bool worth_it = promises(kWorthIt, setting, state);
-  if (!state.rough && worth_it && are_many(blocking, kManyOf, mesh)) {
+  if (!state.rough && worth_it && are_many(blocking, mesh)) {
     if (state.bounds.in_haste) state.bounds = bounds_of(PolishLength::kLong, mesh.face_count());
     state.near = true;
     if (relax_worst(setting, state)) return;
   }
-  if (mesh.face_count() >= kLeastForRegions && are_many(blocking, kManyOf, mesh)) {
+  if (mesh.face_count() >= kLeastForRegions && are_many(blocking, mesh)) {
     relax(setting, blocking, state);
   } else {
     clean(setting, faces_of(blocking), state);
@@ -284,7 +270,7 @@ void take_steps(const Setting& setting, int steps, bool force_first, State& stat
   state.energy = state.last.energies.back();
   state.iterations += state.last.iterations();
   if (state.last.iterations() > 0) state.clean = false;
-  state.near = are_many(state.alternated ? state.last.near : state.last.blocking, kManyOf, mesh);
+  state.near = are_many(state.alternated ? state.last.near : state.last.blocking, mesh);
   if (state.alternated && !state.last.converged) {
     state.energy = relax(setting, std::move(state.last.near), state);
   } else if (state.last.blocked) {
@@ -324,8 +310,7 @@ bool is_kept(const Setting& setting, const State& state) {
   const auto distortion = [&](double energy) {
     return to_dirichlet(setting.options.energy, energy);
   };
-  return distortion(state.energy) <=
-         kNothingLost * distortion(setting.fine.statistics.coarse_energy);
+  return distortion(state.energy) <= distortion(setting.fine.statistics.coarse_energy);
 }
 
 void take_rounds(const Setting& setting, State& state) {
@@ -349,8 +334,7 @@ void take_rounds(const Setting& setting, State& state) {
     const double first = state.last.energies.front();
     const double gained = (state.alternated ? first : start) - state.energy;
     start = first;
-    if (state.alternated && state.iterations >= kFirstSteps &&
-        state.energy < (1 - kWorthIt) * state.hessian_at &&
+    if (state.alternated && state.energy < (1 - kWorthIt) * state.hessian_at &&
         gained > kWorthIt * setting.comparable(state.energy)) {
       const bool taken =
           setting.inverse.take_hessian(setting.options.energy, setting.fine.rest, state.uvs);

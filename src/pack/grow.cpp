@@ -31,9 +31,12 @@ constexpr std::int64_t kMostBlocks = 1 << 22;
 /// Margins below this many texels leave no room for the steps to err.
 constexpr double kLeastMargin = 1;
 
-/// Texels: borders are thinned by so much, distances held to so much; how far contacts are looked
-/// for beyond the margin, and how far a point may move in a step.
-constexpr double kThin = 0.02, kHeld = 0.01, kAhead = 0.75, kFurthest = 0.5;
+/// Texels: borders are thinned by so much, and distances held to so much.
+constexpr double kHeld = 0.01;
+
+/// Texels: how far a point may move in a step, and how far beyond the margin contacts are looked
+/// for.
+constexpr double kFurthest = 0.5;
 
 /// Of the margin: by how much two charts come nearer when they are scaled.
 constexpr double kNearer = 0.5;
@@ -75,7 +78,7 @@ class Growth {
   Growth(const Problem& problem, const Packed& packed, double limit)
       : limit_(limit),
         side_(problem.options().resolution),
-        margin_(2 * problem.radius() + 2 * (kThin + kHeld)),
+        margin_(2 * problem.radius() + 4 * kHeld),
         turns_(problem.options().turns > 4) {
     if (problem.options().block > 1) {
       blocks_.emplace(problem.cells(), problem.cell(), margin_ / 2 - kHeld);
@@ -91,7 +94,7 @@ class Growth {
       for (const Vec2& p : outline.hull) box.extend(p);
       const Vec2 middle = box.center();
       for (Vec2& p : body.outline.points) p = problem.chart(c).scale * (p - middle);
-      thin(body.outline, kThin / texels_per_unit);
+      thin(body.outline, kHeld / texels_per_unit);
       double inertia = 0;
       for (const Vec2& p : body.outline.points) inertia += p.squaredNorm();
       inertia *= texels_per_unit * texels_per_unit / size_of(body.outline.points);
@@ -109,12 +112,12 @@ class Growth {
   }
 
   void run(double effort) {
-    constexpr double kFirstRate = 0.004, kGreatestRate = 0.01, kLeastRate = 0.0004;
+    constexpr double kGreatestRate = 0.01, kLeastRate = 0.0004;
     // Borders that pass each other in a step are not seen to touch.
     const double greatest = std::min(kGreatestRate, kNearer * margin_ / extent_);
     const double least = std::min(kLeastRate, 0.1 * greatest);
     const double budget = effort * kPointSteps;
-    double rate = std::min(kFirstRate, greatest);
+    double rate = greatest;
     while (rate > least && spent_ < budget && density_ < limit_) {
       const std::vector<Pose> before = poses_;
       const std::optional<Blocks> blocks_before = blocks_;
@@ -177,7 +180,7 @@ class Growth {
       }
     }
     contacts_.clear();
-    const EdgeGrid grid(placed, margin_ + kAhead);
+    const EdgeGrid grid(placed, margin_ + kFurthest);
     PollSometimes poll;
     for (Index b = 0; b < size_of(bodies_); ++b) {
       for (const Vec2& p : placed[b].points) {
@@ -194,7 +197,7 @@ class Growth {
     blocks_->take(placed);
     for (Index b = 0; b < size_of(bodies_); ++b) {
       if (placed[b].stays) continue;
-      const std::vector<NearBlock> found = blocks_->near(placed, b, margin_ / 2 + kAhead);
+      const std::vector<NearBlock> found = blocks_->near(placed, b, margin_ / 2 + kFurthest);
       spent_ += kPointsOfBlock * static_cast<double>(found.size() * placed[b].edges.size());
       for (const NearBlock& near : found) {
         if (!(near.distance > 0)) return false;
@@ -210,7 +213,7 @@ class Growth {
     for (int axis = 0; axis < 2; ++axis) {
       for (const double sign : {1.0, -1.0}) {
         const double gap = (sign > 0 ? p[axis] : side_ - p[axis]) - margin_ / 2;
-        if (gap < kAhead) add(body, kNone, p, p, sign * Vec2::Unit(axis), gap);
+        if (gap < kFurthest) add(body, kNone, p, p, sign * Vec2::Unit(axis), gap);
       }
     }
   }
@@ -224,7 +227,7 @@ class Growth {
     const auto flush = [&] {
       if (other == kNone) return;
       const double distance = std::sqrt(least);
-      if (distance > 0 && distance < margin_ + kAhead) {
+      if (distance > 0 && distance < margin_ + kFurthest) {
         add(body, other, p, nearest, (p - nearest) / distance, distance - margin_);
       }
     };

@@ -219,11 +219,7 @@ TEST(RelaxRegions, FindTheMinimumNearbyAndTouchNothingElse) {
       faces.push_back(f);
     }
   }
-  const RelaxedRegions relaxed =
-      relax_regions(kEnergy, mesh, disks::rest_of(mesh), uvs, faces, 4, Work(1));
-  EXPECT_EQ(relaxed.changed, 1);
-  const double area = surface_area(mesh, Work(1));
-  EXPECT_NEAR(relaxed.gain, area * (before - energy_of(mesh, uvs)), 1e-9 * area * before);
+  EXPECT_EQ(relax_regions(kEnergy, mesh, disks::rest_of(mesh), uvs, faces, 4, Work(1)), 1);
   EXPECT_GT(before - 2, 0.01);
   EXPECT_LT(energy_of(mesh, uvs) - 2, 0.01 * (before - 2));
   EXPECT_TRUE(injective(mesh, uvs));
@@ -240,7 +236,7 @@ TEST(RelaxRegions, HaveTheSameBitsOnTwoThreads) {
   for (int i = 0; i < 12; ++i) faces.push_back(random.below(mesh.face_count()));
   const auto rest = disks::rest_of(mesh);
   const double before = energy_of(mesh, one);
-  EXPECT_GT(relax_regions(kEnergy, mesh, rest, one, faces, 4, Work(1)).changed, 1);
+  EXPECT_GT(relax_regions(kEnergy, mesh, rest, one, faces, 4, Work(1)), 1);
   relax_regions(kEnergy, mesh, rest, two, faces, 4, Work(2));
   EXPECT_EQ(one, two);
   EXPECT_LT(energy_of(mesh, one), before);
@@ -257,7 +253,7 @@ TEST(RelaxRegions, HaveTheSameBitsWhereAllThreadsWorkOnOne) {
   const auto rest = disks::rest_of(mesh);
   const auto relaxed_on = [&](int threads) {
     std::vector<Vec2> uvs = start;
-    EXPECT_EQ(relax_regions(kEnergy, mesh, rest, uvs, faces, 8, Work(threads)).changed, 1);
+    EXPECT_EQ(relax_regions(kEnergy, mesh, rest, uvs, faces, 8, Work(threads)), 1);
     return uvs;
   };
   const std::vector<Vec2> one = relaxed_on(1);

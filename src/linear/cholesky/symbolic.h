@@ -10,8 +10,8 @@
 
 namespace beltrami {
 
-/// Threads that a factorization keeps busy: it has some half as many tasks or more, which then come to
-/// no more than so many.
+/// Threads that a factorization keeps busy: it has some half as many tasks or more, which then come
+/// to no more than so many.
 inline constexpr int kMostTasks = 96;
 
 /// The supernodes of L for a matrix of square blocks (all counts and numbers here are of block
