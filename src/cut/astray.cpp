@@ -8,6 +8,7 @@
 
 #include "base/portable_math.h"
 #include "base/types.h"
+#include "base/vectors.h"
 #include "mesh/disk_mesh.h"
 
 namespace beltrami {

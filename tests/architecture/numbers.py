@@ -20,7 +20,7 @@ MOST = 12
 DECLARATION = re.compile(r"\bconstexpr\s+(?:\w+::)*(?:[a-z]\w*|Index)\s+(k[A-Z]\w*\s*[={][^;]*);")
 BRACKETS = re.compile(r"\[[^\]]*\]|\([^()]*\)|\{[^{}]*\}|<[^<>]*>")
 LITERAL = re.compile(r"(?<![\w.])[\d.]*\d")
-MARK = re.compile(r"[={]\s*(?:0|-\d+)\s*}?$")
+MARK = re.compile(r"0|-\d+")
 
 
 def numbers(text: str) -> Iterator[str]:
@@ -28,9 +28,8 @@ def numbers(text: str) -> Iterator[str]:
     for declared in DECLARATION.findall(code_of(text)):
         for one in re.split(r",\s*(?=k[A-Z]\w*\s*[={])", declared):
             name, value = re.split(r"\s*(?==|\{)", one, maxsplit=1)
-            if not value.startswith("{"):
-                value = BRACKETS.sub("", value)
-            if LITERAL.search(value) and not MARK.match(value):
+            value = value.strip("= {}\n")
+            if not MARK.fullmatch(value) and LITERAL.search(BRACKETS.sub("", value)):
                 yield name
 
 

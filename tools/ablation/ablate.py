@@ -5,9 +5,9 @@
     ablate.py --check
 
 A case of cases.json is a text of a source and what stands in its place without the case. A copy of
-the sources in build/ablation is compiled for each. It flattens the meshes, or unwraps them, in turns
-with the program as it is, on one thread. The record has a line for each case and mesh; a table is
-made of it.
+the sources in build/ablation is compiled for each. It flattens or unwraps the meshes in turns with
+the program as it is, on one thread. The record has a line for each case and mesh; a table is made
+of it.
 """
 
 from __future__ import annotations
@@ -82,7 +82,16 @@ def build(case: dict[str, Any] | None) -> Path:
     if not (out / "build.ninja").exists():
         options = ("BUILD_TESTS=OFF", "BUILD_STATIC=OFF", "INSTALL=OFF")
         subprocess.run(
-            ["cmake", "-S", TREE, "-B", out, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"]
+            [
+                "cmake",
+                "-S",
+                TREE,
+                "-B",
+                out,
+                "-G",
+                "Ninja",
+                "-DCMAKE_BUILD_TYPE=Release",
+            ]
             + [f"-DBELTRAMI_{option}" for option in options],
             check=True,
             stdout=subprocess.DEVNULL,
@@ -129,7 +138,11 @@ def run(program: Path, case: dict[str, Any], mesh: Path) -> dict[str, Any]:
     told = json.loads(report.read_text())
     spent = [s["cpu_seconds"] for s in told["stages"] if s["name"] not in ("read", "write")]
     reached = of == "flatten" or bool(told["target"] and told["target"]["reached"])
-    return {"cost": cost_of(told), "cpu": sum(spent), "ok": done.returncode == 0 and reached}
+    return {
+        "cost": cost_of(told),
+        "cpu": sum(spent),
+        "ok": done.returncode == 0 and reached,
+    }
 
 
 def measure(case: dict[str, Any], usual: Path, meshes: list[Path], jobs: int) -> list[dict]:
@@ -138,7 +151,10 @@ def measure(case: dict[str, Any], usual: Path, meshes: list[Path], jobs: int) ->
 
     def both(mesh: Path) -> dict[str, Any]:
         row = {"case": case["name"], "mesh": mesh.stem}
-        return row | {"with": run(usual, case, mesh), "without": run(without, case, mesh)}
+        return row | {
+            "with": run(usual, case, mesh),
+            "without": run(without, case, mesh),
+        }
 
     with ThreadPoolExecutor(jobs) as pool:
         rows = list(pool.map(both, meshes))
@@ -215,7 +231,9 @@ def write_table(page: Path, record: Path, of: str) -> None:
 def main() -> int:
     """Do what the arguments say."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("meshes", nargs="*", type=Path, help="disks to flatten, or surfaces to unwrap")
+    parser.add_argument(
+        "meshes", nargs="*", type=Path, help="disks to flatten, or surfaces to unwrap"
+    )
     parser.add_argument("--of", choices=("flatten", "unwrap"), default="flatten")
     parser.add_argument("--without", nargs="+", help="names of cases; all by default")
     parser.add_argument("--record", type=Path, help="file of lines that is added to")

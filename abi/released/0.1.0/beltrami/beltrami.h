@@ -235,7 +235,7 @@ enum {
   BELTRAMI_OPTION_EFFORT = 40,         /* choice: BELTRAMI_EFFORT_ */
   BELTRAMI_OPTION_FLAT_SEAMS = 41,     /* float: how much longer, where parts then unfold flat; 0 */
   BELTRAMI_OPTION_STACK = 42,          /* choice: BELTRAMI_STACK_ */
-  /* Of the maps of charts, for beltrami_unwrap. */
+  /* Of the maps of charts and of their pages, for beltrami_unwrap. */
   BELTRAMI_OPTION_RECTIFY = 43,     /* choice: BELTRAMI_RECTIFY_ */
   BELTRAMI_OPTION_SNAP_TEXELS = 44, /* int: 1 puts straight borders onto the edges of texels */
   BELTRAMI_OPTION_LABEL_PAGES = 45  /* int: 1 gives each label pages of its own */
