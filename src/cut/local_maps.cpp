@@ -25,6 +25,10 @@
 namespace beltrami {
 namespace {
 
+/// The excess of a face counts up to that in the sum around a vertex: a needle says nothing of what
+/// is around it.
+constexpr double kMostExcess = 10;
+
 constexpr double kNoEnergy = std::numeric_limits<double>::quiet_NaN();
 
 /// Per face of a surface, at its corners.
@@ -186,6 +190,23 @@ LocalMaps with_contact(LocalMaps maps, Index real_faces, double tolerance, const
   });
   measure(real_faces, maps);
   return maps;
+}
+
+std::vector<double> excess_around(const Surface& surface, Index real_faces, const LocalMaps& maps) {
+  std::vector<double> excess(surface.positions.size());
+  double whole = 0;
+  for (Index f = 0; f < real_faces; ++f) {
+    const auto [i, j, k] = surface.faces[f];
+    const std::vector<Vec3>& p = surface.positions;
+    const double area = triangle_area(p[i], p[j], p[k]);
+    whole += area;
+    if (!std::isfinite(maps.energies[f])) continue;
+    const double over = std::clamp(maps.energies[f] - 2, 0.0, kMostExcess);
+    for (const Index v : surface.faces[f]) excess[v] += over * area / 3;
+  }
+  if (!(whole > 0)) return {};
+  for (double& e : excess) e /= whole;
+  return excess;
 }
 
 }  // namespace beltrami

@@ -38,4 +38,8 @@ LocalMaps map_locally(const Surface& surface, Index real_faces, const EdgeMarks&
 LocalMaps with_contact(LocalMaps maps, Index real_faces, double tolerance, const LocalMaps* before,
                        KnownMaps& known, const Work& work);
 
+/// Per vertex of the surface what the energies of the maps exceed 2 by on a third of each face
+/// around it, by the area of all real faces; empty where these have none.
+std::vector<double> excess_around(const Surface& surface, Index real_faces, const LocalMaps& maps);
+
 }  // namespace beltrami

@@ -17,10 +17,7 @@
 #include "cut/edge_marks.h"
 #include "cut/mirrored_seams.h"
 #include "cut/split_overlaps.h"
-#include "cut/straighten.h"
-#include "cut/turning.h"
 #include "mesh/chart.h"
-#include "mesh/disk_mesh.h"
 #include "mesh/surface.h"
 
 namespace beltrami {
@@ -140,30 +137,6 @@ Work SeamRefinement::here() const {
   return work_.part(done, done);
 }
 
-/// Of the seams, and of their turns where these count.
-double SeamRefinement::cost_with_turns() const {
-  if (coarse_.straightness == 0) return tree_.cost();
-  return tree_.cost() + cost_of_turns(coarse_.surface, tree_.seams(), coarse_.cost, tree_.anchors(),
-                                      coarse_.straightness);
-}
-
-/// Short and straight seams miss some of what the others ran to: they are taken where they are
-/// shorter with what has to be added to them, exactly so much or what is worth most.
-void SeamRefinement::shorten_seams(double model_energy, bool exactly) {
-  // Each side on its own they would not stay alike.
-  report_step();
-  if (mirror_ != nullptr || work_.out_of_time()) return;
-  const EdgeMarks before = tree_.seams();
-  const std::vector<bool> anchors = tree_.anchors();
-  const double cost = cost_with_turns(), energy = std::max(model_energy, tree_.energy());
-  tree_.reconnect();
-  tree_.take(straighten(coarse_.surface, tree_.seams(), coarse_.cost, tree_.anchors(),
-                        coarse_.locked, coarse_.straightness, work_.aside()));
-  tree_.extend(energy, exactly);
-  const bool is_better = cost_with_turns() < cost && tree_.energy() <= energy;
-  if (!is_better) tree_.take(before, anchors);
-}
-
 /// Adds paths that go astray, after the seams were opened again along them where `reopens`. Whether
 /// the energy is reached.
 bool SeamRefinement::extend_astray(double model_energy, int number, bool reopens) {
@@ -178,11 +151,10 @@ bool SeamRefinement::extend_astray(double model_energy, int number, bool reopens
 }
 
 Attempt SeamRefinement::sketch() {
+  report_step();
   extend_astray(target_.energy, start_.number, true);
-  shorten_seams(target_.energy);
   tree_.exchange(std::max(target_.energy, tree_.energy()), effort_.exchanges);
   tree_.reopen();
-  shorten_seams(target_.energy);
   Attempt sketch;
   sketch.seams = {tree_.seams(), tree_.anchors()};
   sketch.energy = tree_.energy();
@@ -315,21 +287,8 @@ void SeamRefinement::settle(Attempt now, LocalMaps& maps, Attempt& best) {
 
 /// Teaches the model what maps cost.
 void SeamRefinement::calibrate(const LocalMaps& maps) {
-  const Surface& surface = coarse_.surface;
-  std::vector<double> excess(surface.positions.size());
-  double whole = 0;
-  for (Index f = 0; f < coarse_.real_faces; ++f) {
-    const auto [i, j, k] = surface.faces[f];
-    const std::vector<Vec3>& p = surface.positions;
-    const double area = triangle_area(p[i], p[j], p[k]);
-    whole += area;
-    if (!std::isfinite(maps.energies[f])) continue;
-    const double over = std::max(maps.energies[f] - 2, 0.0);
-    for (const Index v : surface.faces[f]) excess[v] += over * area / 3;
-  }
-  if (!(whole > 0)) return;
-  for (double& e : excess) e /= whole;
-  tree_.calibrate(excess);
+  const std::vector<double> excess = excess_around(coarse_.surface, coarse_.real_faces, maps);
+  if (!excess.empty()) tree_.calibrate(excess);
 }
 
 Attempt SeamRefinement::judged() {
@@ -349,7 +308,6 @@ Attempt SeamRefinement::run_calibrated(int calibrations) {
   if (!judge(true, maps, found)) return found;
   calibrate(maps);
   const double energy = aim(found.excess);
-  if (calibrations > 0) tree_.exchange(std::max(energy, tree_.energy()), effort_.exchanges);
   Attempt attempt = approach(energy, true, true, calibrations);
   return attempt.is_better_than(found) ? attempt : found;
 }
@@ -370,11 +328,7 @@ Attempt SeamRefinement::approach(double model_energy, bool is_sketched, bool is_
     const bool is_correction = round > 0;
     const bool goes_on = is_first ? extend_astray(model_energy, start_.number, true)
                                   : tree_.extend(model_energy, is_correction);
-    shorten_seams(model_energy, is_correction);
-    if (is_first) {
-      tree_.exchange(std::max(model_energy, tree_.energy()), effort_.exchanges);
-      shorten_seams(model_energy);
-    }
+    if (is_first) tree_.exchange(std::max(model_energy, tree_.energy()), effort_.exchanges);
     const int most = best.excess <= 1 ? effort_.rounds : kMostRounds;
     const bool ends = round + 1 >= most || work_.out_of_time();
     const bool is_last = !goes_on || ends;
@@ -416,7 +370,6 @@ void SeamRefinement::vary(int rounds, Attempt& best) {
     const double energy = aim(best.excess);
     if (!tree_.ruin(round, kRuined)) return;
     extend_astray(energy, round, false);
-    shorten_seams(energy);
     if (tree_.energy() < energy) tree_.shrink(energy);
     if (tree_.cost() >= best.cost) continue;
     const double promised = best.promised();
@@ -456,7 +409,6 @@ SeamRefinement::Trial SeamRefinement::try_joint(const SeamTree::Joint& joint, co
   tree_.take(best.seams.seams, best.seams.anchors);
   tree_.join(joint);
   tree_.extend(energy, true);
-  shorten_seams(energy, true);
   if (tree_.cost() > best.cost * (1 - kWorthMapping)) return {};
   LocalMaps maps;
   Attempt attempt;

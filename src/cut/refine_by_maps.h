@@ -87,8 +87,6 @@ class SeamRefinement {
   void report_step();
   Work here() const;
   bool extend_astray(double model_energy, int number, bool reopens);
-  void shorten_seams(double model_energy, bool exactly = false);
-  double cost_with_turns() const;
   double tolerance() const;
   LocalMaps map(const LocalMaps* before) const;
   bool part_overlaps(const LocalMaps& maps);

@@ -130,23 +130,4 @@ std::vector<Index> Turning::cheapest(const Piece& piece, const SeamPatch& patch,
   return touches ? std::vector<Index>() : path;
 }
 
-double cost_of_turns(const Surface& surface, const EdgeMarks& seams,
-                     const std::vector<double>& cost, const std::vector<bool>& anchored,
-                     double weight) {
-  const Turning turning(surface, cost, weight);
-  double sum = 0;
-  PollSometimes poll;
-  for (Index v = 0; v < surface.vertex_count(); ++v) {
-    poll();
-    if (surface.outgoing[v] == kNone || surface.on_boundary[v] || anchored[v]) continue;
-    std::array<Index, 2> two = {kNone, kNone};
-    Index count = 0;
-    surface.for_each_outgoing(v, [&](Index h) {
-      if (seams[h] && count++ < 2) two[count - 1] = h;
-    });
-    if (count == 2) sum += turning.cost(surface.twin[two[0]], two[1]);
-  }
-  return sum;
-}
-
 }  // namespace beltrami

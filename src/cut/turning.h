@@ -63,9 +63,4 @@ class Turning {
   PollSometimes poll_;
 };
 
-/// Of all turns of seams, `weight` as Turning has it: where two meet off the border and `anchored`.
-double cost_of_turns(const Surface& surface, const EdgeMarks& seams,
-                     const std::vector<double>& cost, const std::vector<bool>& anchored,
-                     double weight);
-
 }  // namespace beltrami

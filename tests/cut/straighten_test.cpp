@@ -447,6 +447,24 @@ TEST(Straighten, WhatIsCarriedFromACoarseSurfacePartsTheSameAndCostsLess) {
   }
 }
 
+/// Of all turns of seams, `weight` as Turning has it: where two meet off the border and `anchored`.
+double cost_of_turns(const Surface& surface, const EdgeMarks& seams,
+                     const std::vector<double>& cost, const std::vector<bool>& anchored,
+                     double weight) {
+  const Turning turning(surface, cost, weight);
+  double sum = 0;
+  for (Index v = 0; v < surface.vertex_count(); ++v) {
+    if (surface.outgoing[v] == kNone || surface.on_boundary[v] || anchored[v]) continue;
+    std::array<Index, 2> two = {kNone, kNone};
+    Index count = 0;
+    surface.for_each_outgoing(v, [&](Index h) {
+      if (seams[h] && count++ < 2) two[count - 1] = h;
+    });
+    if (count == 2) sum += turning.cost(surface.twin[two[0]], two[1]);
+  }
+  return sum;
+}
+
 /// Turns of seams, by the length of the edges there over that of all.
 double turning(const Surface& surface, const EdgeMarks& seams) {
   const std::vector<bool> anchored(surface.positions.size(), false);
