@@ -43,7 +43,7 @@ constexpr double kOverlongOfFew = 2;
 /// Of all charts: smaller ones are not split, unless they are longer than such a page, and are left
 /// out of sketches, for they fill gaps. Where they are more than half of all, pages are full as
 /// they are.
-constexpr double kLittle = 0.005;
+constexpr double kLeastPiece = 0.005;
 /// Of the necks of a chart so many are looked at, of the splits next to one another so many are
 /// tried in sketches of packings, and of the numbers of splits that come of it so many are packed
 /// as the charts whole are, before none is made.
@@ -213,7 +213,7 @@ class Splitter {
     const AtlasChart& chart = *piece.chart;
     const bool is_sound = !piece.map->error && piece.map->outcome < Outcome::kNotInjective;
     const bool overlong = is_overlong(piece);
-    const bool is_worth_it = overlong || piece.outline.area > kLittle * covered_;
+    const bool is_worth_it = overlong || piece.outline.area > kLeastPiece * covered_;
     const bool stays = !overlong && (chart.real_faces < kLeastFaces || !has_seam(chart));
     if (!is_sound || !is_worth_it || stays) return;
     // What is too long takes a page for itself: pages may be full once it is split.
@@ -271,7 +271,8 @@ class Splitter {
   }
 
   bool is_crumb(const Piece& piece) const {
-    return piece.map->error || (piece.outline.area <= kLittle * covered_ && !is_overlong(piece));
+    return piece.map->error ||
+           (piece.outline.area <= kLeastPiece * covered_ && !is_overlong(piece));
   }
 
   double sketched(const std::vector<Index>& alive, const Work& work) const {

@@ -39,8 +39,8 @@ constexpr double kWorthMapping = 1e-3;
 constexpr int kMostRounds = 8;
 /// Shares of the excess asked for: with so much a further round gains nothing...
 constexpr double kNear = 0.98;
-/// ... and settling, which takes smaller steps, goes on to here. All steps aim at it, and seams
-/// that promise to be longer by as much have been spoilt on the way: half a step is tried then.
+/// ... and settling, which takes smaller steps, goes on to here. All steps aim at it. Seams whose
+/// promised cost rises by more than this share have been spoilt: half a step is tried then.
 constexpr double kFull = 0.997;
 /// Factor by which the excess of the model is corrected in a round, up or down, at most.
 constexpr double kMostStep = 2;
@@ -307,8 +307,7 @@ Attempt SeamRefinement::run_calibrated(int calibrations) {
   Attempt found;
   if (!judge(true, maps, found)) return found;
   calibrate(maps);
-  const double energy = aim(found.excess);
-  Attempt attempt = approach(energy, true, true, calibrations);
+  Attempt attempt = approach(aim(found.excess), true, true, calibrations);
   return attempt.is_better_than(found) ? attempt : found;
 }
 

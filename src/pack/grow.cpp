@@ -78,7 +78,8 @@ class Growth {
   Growth(const Problem& problem, const Packed& packed, double limit)
       : limit_(limit),
         side_(problem.options().resolution),
-        margin_(2 * problem.radius() + 4 * kHeld),
+        // What both borders are thinned by, and what distances may miss.
+        margin_(2 * problem.radius() + 2 * (kHeld + kHeld)),
         turns_(problem.options().turns > 4) {
     if (problem.options().block > 1) {
       blocks_.emplace(problem.cells(), problem.cell(), margin_ / 2 - kHeld);

@@ -223,6 +223,7 @@ Numbering number_nodes(const std::vector<Node>& nodes, int scale) {
     if (nodes[s].parent != kRoot) below[nodes[s].parent] += below[s];
     parent.push_back(nodes[s].parent == kRoot ? kRoot : compact[nodes[s].parent]);
   }
+  // A subtree is a task if it has no more work: on the average one has half of that.
   const double most = std::max(2 * total / kMostTasks, kLeastTaskCost);
   Numbering result;
   std::vector<int> top;

@@ -10,8 +10,7 @@
 
 namespace beltrami {
 
-/// Threads that a factorization keeps busy: it has some half as many tasks or more, which then come
-/// to no more than so many.
+/// Tasks that a factorization has at most, about: further threads find nothing to do.
 inline constexpr int kMostTasks = 96;
 
 /// The supernodes of L for a matrix of square blocks (all counts and numbers here are of block
