@@ -31,6 +31,8 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// Of a chart, in the lesser part: less is a crumb.
 constexpr double kLeastShare = 0.12;
+/// By so much a split may save more than its neck promises: packings tell.
+constexpr double kHope = 2;
 /// Charts that are longer than a page this full are worth splitting for that alone.
 constexpr double kFull = 0.75;
 /// Sides of such a page that what is too long for it has: its diagonal is shorter.
@@ -44,9 +46,10 @@ constexpr double kOverlongOfFew = 2;
 /// out of sketches, for they fill gaps. Where they are more than half of all, pages are full as
 /// they are.
 constexpr double kLeastPiece = 0.005;
-/// Of the necks of a chart so many are looked at, of the splits next to one another so many are
-/// tried in sketches of packings, and of the numbers of splits that come of it so many are packed
-/// as the charts whole are, before none is made.
+/// Of the necks of a chart so many are looked at. Of the splits next to one another so many are
+/// tried in sketches of packings, and the search ends when so many in a row gained nothing: one may
+/// pay only with the next. Of the numbers of splits that come of it so many are packed as the
+/// charts whole are, before none is made.
 constexpr int kTries = 3;
 /// Texels a side of the pages of these, and turns of their charts, at most: they are compared with
 /// one another alone.
@@ -154,7 +157,7 @@ class Splitter {
     }
     const std::size_t first = splits_.size();
     std::size_t best = net.back() > before ? first : 0;
-    while (splits_.size() <= std::max(best, first) && size_of(splits_) < kMostSplits) {
+    while (splits_.size() < std::max(best, first) + kTries && size_of(splits_) < kMostSplits) {
       if (work_.out_of_time() || !may_have_more()) break;
       const std::optional<double> found = split_best(cost);
       if (!found) break;
@@ -218,7 +221,7 @@ class Splitter {
     if (!is_sound || !is_worth_it || stays) return;
     // What is too long takes a page for itself: pages may be full once it is split.
     const double filled = overlong ? kFull : utilisation_;
-    const NeckOptions options{.worth = worth(filled * filled / covered_),
+    const NeckOptions options{.worth = kHope * worth(filled * filled / covered_),
                               .page = page_area(),
                               .least_share = kLeastShare,
                               .most = kTries};
@@ -311,7 +314,7 @@ class Splitter {
       for (Index n = 0; n < size_of(piece.necks); ++n) {
         const Neck& neck = piece.necks[n];
         const double saved = worth(utilisation_ * utilisation_ * neck.saved / covered_);
-        if (!piece.is_used[n] && saved > neck.cost && cost + neck.cost <= room_) {
+        if (!piece.is_used[n] && kHope * saved > neck.cost && cost + neck.cost <= room_) {
           found.push_back({saved - neck.cost, p, n});
         }
       }
@@ -437,7 +440,8 @@ class Splitter {
 
 Pages pack_split_maps(const Admitted& admitted, const SplitRules& rules, const PackOptions& options,
                       bool float32, SplitCharts charts, const Work& work) {
-  constexpr double kFound = 0.5, kWholePacked = 0.7;  // in the progress
+  constexpr double kFound = 0.5;  // in the progress
+  const double whole_packed = std::midpoint(kFound, 1.0);
   struct Packed {
     std::vector<AtlasChart> charts;
     std::vector<MappedChart> maps;
@@ -462,11 +466,11 @@ Pages pack_split_maps(const Admitted& admitted, const SplitRules& rules, const P
     pages.split = SplitFigures{utilisation_of(charts.charts, charts.maps, pages), 0, 0};
     return pages;
   }
-  Packed best = packed(0, kFound, kWholePacked);
+  Packed best = packed(0, kFound, whole_packed);
   SplitFigures chosen{best.utilisation, 0, 0};
   for (const Index count : std::span(counts).first(std::min<std::size_t>(counts.size(), kTries))) {
     if (work.out_of_time()) break;
-    Packed trial = packed(count, kWholePacked, 1);
+    Packed trial = packed(count, whole_packed, 1);
     const double gained = trial.utilisation - best.utilisation;
     const double longer = trial.length - best.length;
     if (gained <= 0 || splitter.worth(gained) < longer || !are_sound(trial.maps)) continue;

@@ -250,6 +250,43 @@ TEST(SplitNecks, PartsOfOneDensityHaveThatOfTheWhole) {
   EXPECT_EQ(atlas.charts[0].density, atlas.charts[1].density);
 }
 
+/// A closed slab of height 1: squares above and below, and walls between them.
+template <class IsThere>
+TriangleList slab(Index columns, Index rows, const IsThere& is_there) {
+  TriangleList mesh = squares(columns, rows, is_there);
+  const Index vertices = size_of(mesh.positions);
+  for (Index v = 0; v < vertices; ++v)
+    mesh.positions.emplace_back(mesh.positions[v] + Vec3(0, 0, 1));
+  std::set<std::pair<Index, Index>> edges;
+  for (const Triangle& face : mesh.faces) {
+    for (int k = 0; k < 3; ++k) edges.emplace(face[k], face[(k + 1) % 3]);
+  }
+  for (std::size_t f = 0, below = mesh.faces.size(); f < below; ++f) {
+    const auto [a, b, c] = mesh.faces[f];
+    mesh.faces.push_back({a + vertices, b + vertices, c + vertices});
+    mesh.faces[f] = {a, c, b};
+  }
+  for (const auto& [a, b] : edges) {
+    if (edges.count({b, a}) != 0) continue;
+    mesh.faces.push_back({a, b, b + vertices});
+    mesh.faces.push_back({a, b + vertices, a + vertices});
+  }
+  return mesh;
+}
+
+TEST(SplitNecks, LooksAtWhatNecksDoNotPromise) {
+  const TriangleList mesh =
+      slab(24, 24, [](Index x, Index y) { return x == 11 || x == 12 || y == 11 || y == 12; });
+  AtlasOptions options = priced(0);
+  options.target.emplace();
+  const Atlas whole = unwrapped(mesh, options);
+  options.fill_weight = 10;
+  const Atlas atlas = unwrapped(mesh, options);
+  expect_connected(atlas);
+  expect_worth(atlas, whole, 10);
+  EXPECT_GT(atlas.utilisation, 1.2 * whole.utilisation);
+}
+
 TEST(SplitNecks, PaysOnModelsOfPeople) {
   for (const char* name : {"closed/horse_f10000.obj", "closed/octopus_mainComp_f6000.obj"}) {
     const auto path = shared_data::folder() / name;
