@@ -122,7 +122,7 @@ TextureBake::TextureBake(const MeshFile& file, const std::string& output, bool m
   }
   name_files(output);
   if (!libraries_ || baked_.empty()) return;
-  const MeshFile old = read_mesh(file.path, Content::kUvs, file.reach);
+  const MeshFile old = read_mesh(file.path, Content::kSomeUvs, file.reach);
   const auto& [values, of_corner] = old.corner_uvs;
   const std::vector<double>& uvs = of_corner.empty() ? old.uvs : values;
   for (const std::size_t uv : of_corner.empty() ? old.polygons.corners() : of_corner) {
@@ -132,8 +132,18 @@ TextureBake::TextureBake(const MeshFile& file, const std::string& output, bool m
 
 void TextureBake::list_textures(std::vector<TextureUse> uses) {
   for (TextureUse& use : uses) {
-    const std::string path = libraries_ ? libraries_->image_path(use) : gltf_image_path(file_, use);
+    std::string path, refusal;
+    try {
+      path = libraries_ ? libraries_->image_path(use) : gltf_image_path(file_, use);
+    } catch (const Failure& failure) {
+      refusal = failure.what();
+    }
     std::error_code ignored;
+    if (!refusal.empty()) {
+      missing_.push_back(refusal + " (" + use.name +
+                         "): its name stays, and nothing is baked for it");
+      continue;
+    }
     if (!path.empty() && !fs::exists(path, ignored)) {
       missing_.push_back(path + " (" + use.name +
                          ") is missing: its name stays, and nothing is baked for it; put the "
@@ -234,8 +244,12 @@ std::vector<double> TextureBake::old_uvs(std::uint64_t uv_set) const {
 }
 
 TextureBake::Places TextureBake::places_of(std::uint64_t material, const TextureUse* use) const {
-  const std::vector<bool> has =
-      libraries_ ? libraries_->faces_of(material) : gltf_faces_of(file_, material);
+  std::vector<bool> has;
+  if (libraries_) {
+    for (const std::uint64_t own : libraries_->material_of_faces()) has.push_back(own == material);
+  } else {
+    has = gltf_faces_of(file_, material);
+  }
   const std::vector<double> uvs = use != nullptr ? old_uvs(use->uv_set) : std::vector<double>();
   const auto [a, b, c, d, e, f] = use != nullptr ? use->transform : TextureUse{}.transform;
   Places places;

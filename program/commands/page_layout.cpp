@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -270,11 +271,13 @@ void measure_densities(const MeshFile& file, const UvMesh& mesh,
                        const std::vector<std::uint32_t>& chart_of_triangle, const std::string& name,
                        PageLayout& layout) {
   std::vector<std::uint64_t> labels, known;
+  std::map<std::uint64_t, std::string> texts;
   if (!name.empty()) {
     labels = face_labels(file, name, "--labels", "tell densities by");
     known = labels;
     std::sort(known.begin(), known.end());
     known.erase(std::unique(known.begin(), known.end()), known.end());
+    texts = label_texts(file, name, known);
   }
   Densities charts(layout.charts), by_label(known.size());
   for (std::size_t i = 0; i < mesh.uv_indices.size(); i += 3) {
@@ -286,8 +289,8 @@ void measure_densities(const MeshFile& file, const UvMesh& mesh,
     by_label.add(static_cast<std::size_t>(place - known.begin()), face, uv_area, area);
   }
   layout.of_charts = charts.taken(layout.resolution, [](std::size_t) { return std::string(); });
-  layout.of_labels = by_label.taken(
-      layout.resolution, [&](std::size_t i) { return label_text(file, name, known[i]); });
+  layout.of_labels =
+      by_label.taken(layout.resolution, [&](std::size_t i) { return texts.at(known[i]); });
 }
 
 void measure_density(const std::vector<Chart>& charts, PageLayout& layout) {

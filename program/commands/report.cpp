@@ -179,8 +179,8 @@ void append_layout(const Report& report, std::string& text) {
            100 * found.utilisation);
   }
   for (const Density& density : found.of_labels) {
-    append(text, "density    %.4g texels per unit of %s\n", density.texels_per_unit,
-           density.name.c_str());
+    append(text, "density    %.4g texels per unit of ", density.texels_per_unit);
+    text += one_line(density.name) + "\n";
   }
   for (const std::string& what : report.unmet) text += "unmet      " + what + "\n";
 }

@@ -177,26 +177,33 @@ class ToGltf {
   }
 
   std::vector<std::string> take_not_kept() { return std::move(not_kept_); }
+  std::vector<std::uint64_t> take_polygons() { return std::move(polygons_); }
 
  private:
   static constexpr std::uint64_t kNoMaterial = std::numeric_limits<std::uint64_t>::max();
 
   void add_materials() {
     const MaterialLibraries libraries(mesh_, false);
-    if (libraries.count() == 0) return;
-    Json& json = document_.json;
-    json["materials"] = Json::array();
-    for (std::uint64_t i = 0; i < libraries.count(); ++i) {
-      const std::vector<bool> has = libraries.faces_of(i);
-      if (std::find(has.begin(), has.end(), true) == has.end()) continue;
-      const std::uint64_t number = json["materials"].size();
-      json["materials"].push_back(material_of(libraries, i));
-      for (std::size_t f = 0; f < has.size(); ++f) {
-        if (has[f]) material_of_face_[f] = number;
-      }
-      add_textures(libraries, libraries.textures_of(i), number);
+    for (const std::string& what : libraries.unread()) not_kept_.push_back("materials: " + what);
+    const std::vector<std::uint64_t> of_face = libraries.material_of_faces();
+    std::vector<std::uint64_t> number(libraries.count(), kNoMaterial);
+    for (const std::uint64_t material : of_face) {
+      if (material != MaterialLibraries::kNone) number[material] = 0;
     }
-    if (json["materials"].empty()) json.erase("materials");
+    Json materials = Json::array();
+    for (std::uint64_t i = 0; i < libraries.count(); ++i) {
+      if (number[i] == kNoMaterial) continue;
+      number[i] = materials.size();
+      materials.push_back(material_of(libraries, i));
+    }
+    if (materials.empty()) return;
+    document_.json["materials"] = std::move(materials);
+    for (std::size_t f = 0; f < of_face.size(); ++f) {
+      if (of_face[f] != MaterialLibraries::kNone) material_of_face_[f] = number[of_face[f]];
+    }
+    for (std::uint64_t i = 0; i < libraries.count(); ++i) {
+      if (number[i] != kNoMaterial) add_textures(libraries, libraries.textures_of(i), number[i]);
+    }
   }
 
   /// A map of a material that can be read.
@@ -374,6 +381,8 @@ class ToGltf {
     const bool per_vertex = of_corner.empty();
     const std::size_t at = per_vertex ? with_uvs_->polygons.corners()[corner] : of_corner[corner];
     const std::vector<double>& uvs = per_vertex ? with_uvs_->uvs : values;
+    // Faces without UVs are beside those with them, and a primitive has one of each.
+    if (std::isnan(uvs[2 * at])) return {};
     return {uvs[2 * at], 1 - uvs[2 * at + 1]};
   }
 
@@ -455,10 +464,14 @@ class ToGltf {
     const std::uint64_t materials =
         document_.json.contains("materials") ? document_.json["materials"].size() : 0;
     std::vector<std::string> indices(materials + 1);
+    std::vector<std::vector<std::uint64_t>> polygons(materials + 1);
     for (std::size_t at = 0; at < corners_.size(); ++at) {
-      const std::uint64_t material = material_of_face_[mesh_.polygons.of_corner(corners_[at])];
-      gltf::append_little(indices[std::min(material, materials)], index_[at]);
+      const std::uint64_t polygon = mesh_.polygons.of_corner(corners_[at]);
+      const std::uint64_t place = std::min(material_of_face_[polygon], materials);
+      gltf::append_little(indices[place], index_[at]);
+      if (at % 3 == 0) polygons[place].push_back(polygon);
     }
+    for (const auto& own : polygons) polygons_.insert(polygons_.end(), own.begin(), own.end());
     Json primitives = Json::array();
     for (std::uint64_t i = 0; i <= materials; ++i) {
       if (indices[i].empty()) continue;
@@ -500,6 +513,7 @@ class ToGltf {
   Document document_;
   std::vector<std::uint32_t> corners_, index_;   ///< of triangles
   std::vector<std::uint64_t> material_of_face_;  ///< in the document
+  std::vector<std::uint64_t> polygons_;          ///< of its triangles
   std::vector<const Column*> normals_;           ///< of vertices
   Json attributes_ = Json::object();
   bool has_colours_ = false;
@@ -508,13 +522,13 @@ class ToGltf {
 
 }  // namespace
 
-MeshFile as_gltf(const MeshFile& mesh, Content content) {
+AsGltf as_gltf(const MeshFile& mesh, Content content) {
   std::optional<MeshFile> with_uvs;
   const bool has_uvs = !mesh.uvs.empty() || !mesh.corner_uvs.values.empty();
   if (!has_uvs && format_of(mesh.path) == MeshFormat::kObj &&
       !MaterialLibraries(mesh, false).textures().empty()) {
     try {
-      with_uvs = read_mesh(mesh.path, Content::kUvs, mesh.reach);
+      with_uvs = read_mesh(mesh.path, Content::kSomeUvs, mesh.reach);
     } catch (const Failure& failure) {
       if (failure.exit_code == kExitCancelled) throw;  // else it has no UVs
     }
@@ -529,7 +543,7 @@ MeshFile as_gltf(const MeshFile& mesh, Content content) {
   file.truncated = mesh.truncated;
   file.not_kept = mesh.not_kept;
   for (std::string& what : conversion.take_not_kept()) file.not_kept.push_back(std::move(what));
-  return file;
+  return {std::move(file), conversion.take_polygons()};
 }
 
 }  // namespace beltrami::cli

@@ -156,9 +156,17 @@ class Unwrapping {
     const bool islands = options_.integer(BELTRAMI_OPTION_CUT) == BELTRAMI_CUT_ISLANDS;
     file_ =
         read_mesh(arguments_.input, islands ? Content::kAll : Content::kSurface, arguments_.reach);
+    read_labels();
     if (becomes_gltf()) {
       given_ = {file_.vertex_count(), unreferenced_vertices(file_)};
-      file_ = as_gltf(file_, islands ? Content::kAll : Content::kSurface);
+      auto [file, polygons] = as_gltf(file_, islands ? Content::kAll : Content::kSurface);
+      file_ = std::move(file);
+      for (std::vector<std::uint64_t>* labels : {&labels_, &materials_}) {
+        if (labels->empty()) continue;
+        std::vector<std::uint64_t> of_triangles;
+        for (const std::uint64_t polygon : polygons) of_triangles.push_back((*labels)[polygon]);
+        *labels = std::move(of_triangles);
+      }
     }
     if (writes_gltf()) {
       require_uv_set(file_, arguments_.uv_set);
@@ -177,15 +185,6 @@ class Unwrapping {
     if (!file_.truncated.empty()) {
       file_.not_kept.push_back("what is missing of the input (" + file_.truncated + ")");
     }
-    if (arguments_.labels.empty() && options_.integer(BELTRAMI_OPTION_LABEL_PAGES) != 0) {
-      throw Failure("--label-pages gives each label pages of its own: say by --labels which");
-    }
-    if (!arguments_.labels.empty()) {
-      labels_ = face_labels(file_, arguments_.labels, "--labels", "cut along");
-    }
-    if (!arguments_.materials.empty()) {
-      materials_ = face_labels(file_, arguments_.materials, "--materials", "draw seams");
-    }
     if (!arguments_.paint.empty()) paint_ = read_paint(arguments_.paint, file_);
     if (!arguments_.seams.empty()) {
       seams_ = read_seams(arguments_.seams, file_);
@@ -197,6 +196,21 @@ class Unwrapping {
     report_.faces = file_.polygons.size();
     report_.short_faces = file_.short_faces;
     clock.finish();
+  }
+
+  /// Of the faces that the file has.
+  void read_labels() {
+    const bool have_pages = options_.integer(BELTRAMI_OPTION_LABEL_PAGES) != 0;
+    if (arguments_.labels.empty() && have_pages) {
+      throw Failure("--label-pages gives each label pages of its own: say by --labels which");
+    }
+    if (!arguments_.labels.empty()) {
+      labels_ = face_labels(file_, arguments_.labels, "--labels", "cut along");
+      if (have_pages) label_texts_ = label_texts(file_, arguments_.labels, labels_);
+    }
+    if (!arguments_.materials.empty()) {
+      materials_ = face_labels(file_, arguments_.materials, "--materials", "draw seams");
+    }
   }
 
   void note_seams_without_edge() {
@@ -336,9 +350,7 @@ class Unwrapping {
   void note_label_pages(const std::vector<std::uint64_t>& pages_of_corners) {
     PagesOfLabels pages;
     std::map<std::uint64_t, std::uint64_t> numbers;
-    for (const auto& [label, text] : label_texts(file_, arguments_.labels, labels_)) {
-      numbers[label] = pages.number(text);
-    }
+    for (const auto& [label, text] : label_texts_) numbers[label] = pages.number(text);
     for (std::size_t c = 0; c < pages_of_corners.size(); ++c) {
       pages.add(numbers[labels_[file_.polygons.of_corner(c)]], pages_of_corners[c]);
     }
@@ -501,6 +513,7 @@ class Unwrapping {
   std::optional<Vertices> given_;  ///< of IN, where glTF has others
   MeshFile file_;
   std::vector<std::uint64_t> labels_, materials_;
+  std::map<std::uint64_t, std::string> label_texts_;  ///< where labels have pages of their own
   Paint paint_;
   std::vector<std::uint32_t> seams_;
   Pins pins_;

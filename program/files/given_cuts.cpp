@@ -119,29 +119,28 @@ std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& 
   return labels;
 }
 
-std::string label_text(const MeshFile& file, const std::string& given, std::uint64_t label) {
-  const std::string name = name_in(file, given);
-  for (const auto& [list, keyword] : kStatements) {
-    if (list != name) continue;
-    std::set<std::string> known;
-    for (const Statement& statement : file.statements) {
-      if (keyword_of(statement) != keyword || !known.insert(statement.text).second) continue;
-      if (known.size() == label) return statement.text;
-    }
-    return "none of the " + name;
-  }
-  std::array<char, 32> digits{};
-  const double value = std::bit_cast<double>(label);
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  return name + " " + std::string(digits.data(), end);
-}
-
 std::map<std::uint64_t, std::string> label_texts(const MeshFile& file, const std::string& given,
                                                  const std::vector<std::uint64_t>& labels) {
+  const std::string name = name_in(file, given);
   std::map<std::uint64_t, std::string> texts;
-  for (const std::uint64_t label : labels) {
-    const auto [place, is_new] = texts.try_emplace(label);
-    if (is_new) place->second = label_text(file, given, label);
+  for (const std::uint64_t label : labels) texts.try_emplace(label);
+  for (const auto& [list, keyword] : kStatements) {
+    if (list != name) continue;
+    for (auto& [label, text] : texts) text = "none of the " + name;
+    std::set<std::string_view> known;
+    for (const Statement& statement : file.statements) {
+      if (keyword_of(statement) != keyword || !known.insert(statement.text).second) continue;
+      if (const auto found = texts.find(known.size()); found != texts.end()) {
+        found->second = statement.text;
+      }
+    }
+    return texts;
+  }
+  for (auto& [label, text] : texts) {
+    std::array<char, 32> digits{};
+    const auto value = std::bit_cast<double>(label);
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    text = name + " " + std::string(digits.data(), end);
   }
   return texts;
 }

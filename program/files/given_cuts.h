@@ -16,11 +16,8 @@ namespace beltrami::cli {
 std::vector<std::uint64_t> face_labels(const MeshFile& file, const std::string& given,
                                        const std::string& flag, const std::string& to);
 
-/// What a label of face_labels is called in the file: "usemtl wood", or a number. Precondition: it
-/// has it.
-std::string label_text(const MeshFile& file, const std::string& given, std::uint64_t label);
-
-/// Those of all labels, by their numbers.
+/// What labels of face_labels are called in the file, by their numbers: "usemtl wood", or a number.
+/// Precondition: it has them.
 std::map<std::uint64_t, std::string> label_texts(const MeshFile& file, const std::string& given,
                                                  const std::vector<std::uint64_t>& labels);
 

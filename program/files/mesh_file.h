@@ -47,8 +47,11 @@ struct CornerUvs {
 /// A statement of an OBJ file that holds for, or stands between, the faces: a group, a material.
 struct Statement {
   std::uint64_t polygon = 0;  ///< it stands before this one
-  std::string text;           ///< as in the file, without the line end
+  std::string text;           ///< as in the file, without the line end; in UTF-8
+  std::string bytes = {};     ///< in the file, of a name in another encoding that other files have
   bool leads_on = false;      ///< names in it are those of files beside the output
+
+  const std::string& in_file() const { return bytes.empty() ? text : bytes; }
 };
 
 /// A mesh as its file has it. What is computed on is its Surface (surface.h).
@@ -84,6 +87,7 @@ enum class MeshFormat { kObj, kOff, kPly, kStl, kGltf };
 enum class Content {
   kSurface,  ///< all but UVs, which a run replaces
   kUvs,      ///< positions, polygons and UVs, and nothing else: a file without UVs fails
+  kSomeUvs,  ///< the same, and corners of OBJ without UVs have some that are no numbers
   kAll       ///< both
 };
 

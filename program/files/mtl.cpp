@@ -7,10 +7,12 @@
 #include <string_view>
 #include <system_error>
 
+#include "files/encoding.h"
 #include "files/inside_folder.h"
 #include "files/polygons.h"
 #include "process/descriptor.h"
 #include "process/failure.h"
+#include "process/interrupt.h"
 
 namespace beltrami::cli {
 namespace {
@@ -78,11 +80,18 @@ std::vector<std::string> names_of(const MeshFile& file, std::string_view names) 
   return {std::string(without_blanks_behind(names))};
 }
 
+/// The name of a material that a statement gives the faces behind it.
+std::optional<std::string> name_in_use(const Statement& statement) {
+  std::string_view rest = statement.in_file();
+  if (take_word(rest) != "usemtl" || rest.empty()) return std::nullopt;
+  return std::string(without_blanks_behind(rest));
+}
+
 }  // namespace
 
 MaterialLibraries::MaterialLibraries(const MeshFile& file, bool strict) : file_(file) {
   for (const Statement& statement : file.statements) {
-    std::string_view rest = statement.text;
+    std::string_view rest = statement.in_file();
     if (take_word(rest) != "mtllib") continue;
     for (const std::string& name : names_of(file, rest)) {
       const NamedFile named = follow_name(file.path, name, file.reach);
@@ -93,9 +102,11 @@ MaterialLibraries::MaterialLibraries(const MeshFile& file, bool strict) : file_(
         read_library(named.path);
       } catch (const Failure& failure) {
         if (strict || failure.exit_code == kExitCancelled) throw;
+        unread_.emplace_back(failure.what());
       }
     }
   }
+  add_unlisted();
 }
 
 void MaterialLibraries::read_library(const std::string& path) {
@@ -111,7 +122,7 @@ void MaterialLibraries::read_library(const std::string& path) {
     line.text = rest;
     const std::string keyword(take_word(rest));
     if (keyword == "newmtl") {
-      materials_.push_back({std::string(rest), path, {}});
+      materials_.push_back({utf8_of(rest), path, std::string(rest), {}});
       continue;
     }
     if (materials_.empty()) continue;  // comments
@@ -150,30 +161,39 @@ void MaterialLibraries::read_library(const std::string& path) {
   }
 }
 
+/// What statements of `file` name, and no library has.
+void MaterialLibraries::add_unlisted() {
+  for (std::uint64_t i = 0; i < materials_.size(); ++i) {
+    first_of_name_.try_emplace(materials_[i].bytes, i);
+  }
+  for (const Statement& statement : file_.statements) {
+    const std::optional<std::string> name = name_in_use(statement);
+    if (!name || !first_of_name_.try_emplace(*name, materials_.size()).second) continue;
+    materials_.push_back({utf8_of(*name), {}, *name, {}});
+  }
+}
+
 std::vector<bool> MaterialLibraries::materials_in_use() const {
   std::vector<bool> used(materials_.size(), false);
-  for (std::uint64_t i = 0; i < materials_.size(); ++i) {
-    const std::vector<bool> faces = faces_of(i);
-    used[i] = std::find(faces.begin(), faces.end(), true) != faces.end();
+  for (const std::uint64_t material : material_of_faces()) {
+    if (material != kNone) used[material] = true;
   }
   return used;
 }
 
-std::vector<bool> MaterialLibraries::faces_of(std::uint64_t material) const {
-  std::vector<bool> found(file_.polygons.size(), false);
-  std::uint64_t first = 0;
-  bool has = false;
+std::vector<std::uint64_t> MaterialLibraries::material_of_faces() const {
+  std::vector<std::uint64_t> found(file_.polygons.size(), kNone);
+  std::uint64_t first = 0, material = kNone;
   const auto fill_to = [&](std::uint64_t end) {
-    for (; first < end && first < found.size(); ++first) found[first] = has;
+    for (; first < end && first < found.size(); ++first) found[first] = material;
   };
   for (const Statement& statement : file_.statements) {
+    throw_if_interrupted();
     std::string_view rest = statement.text;
     if (take_word(rest) != "usemtl") continue;
     fill_to(statement.polygon);
-    const std::string_view name = without_blanks_behind(rest);
-    const auto of_name = std::find_if(materials_.begin(), materials_.end(),
-                                      [&](const Material& m) { return m.name == name; });
-    has = static_cast<std::uint64_t>(of_name - materials_.begin()) == material;
+    const std::optional<std::string> name = name_in_use(statement);
+    material = name ? first_of_name_.at(*name) : kNone;
   }
   fill_to(found.size());
   return found;
@@ -218,11 +238,13 @@ std::vector<TextureUse> MaterialLibraries::textures() const {
   const std::vector<bool> used = materials_in_use();
   for (std::uint64_t i = 0; i < materials_.size(); ++i) {
     if (!used[i]) continue;
+    const auto first = static_cast<std::ptrdiff_t>(uses.size());
     for (TextureUse& use : textures_of(i)) {
-      const auto same = std::find_if(uses.begin(), uses.end(), [&](const TextureUse& known) {
-        return known.material == i && known.image == use.image && known.meaning == use.meaning &&
-               known.transform == use.transform && known.reading.along_u == use.reading.along_u;
-      });
+      const auto same =
+          std::find_if(uses.begin() + first, uses.end(), [&](const TextureUse& known) {
+            return known.image == use.image && known.meaning == use.meaning &&
+                   known.transform == use.transform && known.reading.along_u == use.reading.along_u;
+          });
       if (same != uses.end()) {
         same->slots.push_back(use.slots.front());
       } else {
@@ -257,7 +279,8 @@ std::vector<std::string> MaterialLibraries::sources() const {
 std::string MaterialLibraries::text(const std::vector<BakedTexture>& baked) const {
   std::string text = "# Textures by beltrami, for the UVs of the model beside\n";
   for (const Material& material : materials_) {
-    text += "newmtl " + material.name + "\n";
+    if (material.library.empty()) continue;
+    text += "newmtl " + material.bytes + "\n";
     for (const Line& line : material.lines) {
       const std::string own = slot(material, line);
       const auto found = std::find_if(baked.begin(), baked.end(), [&](const BakedTexture& texture) {

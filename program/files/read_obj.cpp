@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "files/encoding.h"
 #include "files/extra_numbers.h"
 #include "files/mesh_file.h"
 #include "files/notes.h"
@@ -21,43 +22,9 @@ constexpr std::array<std::string_view, 14> kKept = {
     "g",   "o",        "s",        "usemtl", "mtllib",     "usemap",    "maplib",
     "lod", "c_interp", "d_interp", "bevel",  "shadow_obj", "trace_obj", "mg"};
 
-/// Bytes that follow the first one of a character in UTF-8; -1 for what begins none.
-int bytes_after(unsigned char first) {
-  if (first < 0x80) return 0;
-  if (first >= 0xC2 && first < 0xE0) return 1;
-  if (first >= 0xE0 && first < 0xF0) return 2;
-  return first >= 0xF0 && first < 0xF5 ? 3 : -1;
-}
-
-bool is_utf8(std::string_view text) {
-  int expected = 0;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (expected > 0) {
-      if ((byte & 0xC0) != 0x80) return false;
-      --expected;
-    } else {
-      expected = bytes_after(byte);
-      if (expected < 0) return false;
-    }
-  }
-  return expected == 0;
-}
-
-/// Each byte as the character that it is in Latin-1.
-std::string from_latin1(std::string_view text) {
-  std::string utf8;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80) {
-      utf8 += c;
-    } else {
-      utf8 += static_cast<char>(0xC0 | byte >> 6);
-      utf8 += static_cast<char>(0x80 | (byte & 0x3F));
-    }
-  }
-  return utf8;
-}
+/// Those of them that have names of other files, or names that stand there.
+constexpr std::array<std::string_view, 4> kNamesElsewhere = {"usemtl", "mtllib", "usemap",
+                                                             "maplib"};
 
 class ObjReader {
  public:
@@ -76,7 +43,9 @@ class ObjReader {
 
  private:
   bool wants_uvs() const { return content_ != Content::kSurface; }
-  bool wants_attributes() const { return content_ != Content::kUvs; }
+  bool wants_attributes() const {
+    return content_ == Content::kSurface || content_ == Content::kAll;
+  }
 
   void read_statement() {
     cursor_.skip_blanks();
@@ -135,18 +104,28 @@ class ObjReader {
       std::string line(begin, cursor_.position());
       // A backslash at the end would continue the line into the next one.
       line.erase(line.find_last_not_of(" \t\r\n\\") + 1);
-      // Readers that decode text would refuse the whole file.
-      if (!is_utf8(line)) {
-        line = from_latin1(line);
-        other_encoding_ = true;
-      }
-      mesh_.statements.push_back({mesh_.polygons.size(), std::move(line)});
+      keep_statement(keyword, std::move(line));
       return;
     } else {
       require_text(keyword);
       note_unknown(mesh_.not_kept, "statements", keyword);
     }
     cursor_.skip_line();
+  }
+
+  /// Readers that decode text would refuse a file with a name in another encoding. But a name that
+  /// stands in another file, too, must stay what it is there.
+  void keep_statement(std::string_view keyword, std::string line) {
+    Statement& statement = mesh_.statements.emplace_back();
+    statement.polygon = mesh_.polygons.size();
+    statement.text = utf8_of(line);
+    if (statement.text == line) return;
+    if (std::find(kNamesElsewhere.begin(), kNamesElsewhere.end(), keyword) !=
+        kNamesElsewhere.end()) {
+      statement.bytes = std::move(line);
+    } else {
+      other_encoding_ = true;
+    }
   }
 
   /// A polyline or points, with its numbers made absolute: they must not depend on where it stands.
@@ -324,6 +303,13 @@ class ObjReader {
     }
   }
 
+  /// Corners without texture coordinates get some that are no numbers.
+  void fill_uvs() {
+    const auto none = static_cast<std::uint32_t>(textures_.size() / 2);
+    textures_.resize(textures_.size() + 2, std::numeric_limits<double>::quiet_NaN());
+    std::replace(corner_textures_.begin(), corner_textures_.end(), kNoTexture, none);
+  }
+
   void resolve_uvs() {
     bool named = false;
     for (const std::uint32_t texture : corner_textures_) named |= texture != kNoTexture;
@@ -332,6 +318,7 @@ class ObjReader {
       return;
     }
     if (!named) throw Failure(path_ + ": no texture coordinates: faces need the form v/vt");
+    if (content_ == Content::kSomeUvs) fill_uvs();
     for (std::size_t i = 0; i < corner_textures_.size(); ++i) {
       if (corner_textures_[i] != kNoTexture) continue;
       const std::uint64_t face = mesh_.polygons.of_corner(i);

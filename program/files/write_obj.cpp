@@ -146,7 +146,7 @@ void write_obj(const MeshFile& mesh, const std::string& path, Writer& out) {
   auto next = mesh.statements.begin();
   const auto write_statement = [&] {
     out.text(next->leads_on                  ? next->text
-             : per_vertex || !is_line(*next) ? names.line(next->text)
+             : per_vertex || !is_line(*next) ? names.line(next->in_file())
                                              : without_uvs(next->text));
     out.text("\n");
     ++next;
@@ -170,7 +170,7 @@ std::vector<std::string> not_in_obj(const MeshFile& mesh, const std::string& pat
   for (const Column* column : normal_columns(mesh)) kept.push_back(column);
   MovedNames names(mesh, path);
   for (const Statement& statement : mesh.statements) {
-    if (!statement.leads_on) names.line(statement.text);
+    if (!statement.leads_on) names.line(statement.in_file());
   }
   std::vector<std::string> found = names.notes();
   for (const Column& column : mesh.vertex_columns) {

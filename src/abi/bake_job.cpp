@@ -147,6 +147,9 @@ std::vector<std::uint32_t> read_pages(const beltrami_buffer& buffer, std::uint64
   return found;
 }
 
+/// Old UVs of greater numbers are no place: doubles tell no texels apart there.
+constexpr double kFarthest = 1e15;
+
 std::vector<SourceTriangle> read_sources(const beltrami_bake_job& job, std::uint64_t faces,
                                          const Work& work) {
   const std::vector<UvTriangle> uvs =
@@ -155,11 +158,11 @@ std::vector<SourceTriangle> read_sources(const beltrami_bake_job& job, std::uint
       read_pages(job.old_pages, faces, job.image_count, "old pages", work);
   std::vector<SourceTriangle> sources(uvs.size());
   for (std::size_t t = 0; t < uvs.size(); ++t) {
-    const bool finite = std::all_of(uvs[t].begin(), uvs[t].end(), [](const auto& uv) {
-      return std::isfinite(uv[0]) && std::isfinite(uv[1]);
+    const bool is_there = std::all_of(uvs[t].begin(), uvs[t].end(), [](const auto& uv) {
+      return std::abs(uv[0]) <= kFarthest && std::abs(uv[1]) <= kFarthest;
     });
-    sources[t].page = finite ? pages[t] : kNoPage;
-    if (finite) sources[t].uvs = uvs[t];
+    sources[t].page = is_there ? pages[t] : kNoPage;
+    if (is_there) sources[t].uvs = uvs[t];
   }
   return sources;
 }

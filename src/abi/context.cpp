@@ -122,7 +122,12 @@ LoadedMesh load_mesh(const beltrami_mesh* theirs, const Work& work,
 }  // namespace beltrami
 
 beltrami::Work beltrami_context::work(beltrami::Progress watched) const {
-  const beltrami::Work made(beltrami::limits(options), std::move(watched));
+  return work(beltrami::limits(options), std::move(watched));
+}
+
+beltrami::Work beltrami_context::work(const beltrami::Limits& bounds,
+                                      beltrami::Progress watched) const {
+  const beltrami::Work made(bounds, std::move(watched));
   if (parallel_for == nullptr) return made;
   made.pool().lend([function = parallel_for, user = parallel_user](
                        int count, const std::function<void(int)>& job) {
@@ -235,7 +240,7 @@ beltrami_status beltrami_context::begin_session(const beltrami_surface* surface,
   beltrami::RunMark mark(*this);
   const beltrami::InterruptScope interruptible({&cancelled, header.cancel, {}});
   beltrami::HostProgress host(progress, user);
-  const beltrami::Work work(beltrami::limits(options), host.watched());
+  const beltrami::Work work = this->work(host.watched());
   auto begun = std::make_unique<beltrami::EditSession>(header, options, work.named("read"));
   if (mark.take_request() || host.cancelled()) {
     throw beltrami::Cancelled();
@@ -254,7 +259,7 @@ beltrami_status beltrami_context::run_session(
   beltrami::HostProgress host(progress, user);
   beltrami::Limits bounds = beltrami::limits(options);
   if (seconds > 0) bounds.seconds = seconds;
-  const beltrami::Work work(bounds, host.watched());
+  const beltrami::Work work = this->work(bounds, host.watched());
   const beltrami_status status = body(own, work);
   session_seconds = beltrami::wall_seconds() - wall;
   session_cpu_seconds = beltrami::cpu_seconds() - cpu;

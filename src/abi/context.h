@@ -57,6 +57,8 @@ struct beltrami_context {
   bool running = false;
 
   /// What a run may use: the options' limits, and the host's threads where it lends them.
+  beltrami::Work work(const beltrami::Limits& bounds, beltrami::Progress watched) const;
+  /// Within those of the options.
   beltrami::Work work(beltrami::Progress watched) const;
 
   /// Bytes that the library will hold at the peak of the next run: see beltrami_estimate_memory.

@@ -30,9 +30,11 @@ constexpr std::size_t kBits = 64;  // of a word of EditSession::moved_
 
 void require_no_others(const beltrami_surface& header) {
   const std::pair<const char*, const beltrami_buffer*> others[] = {
-      {"face_labels", &header.face_labels},   {"densities", &header.densities},
-      {"vertex_paint", &header.vertex_paint}, {"painted_edges", &header.painted_edges},
-      {"materials", &header.materials},       {"pins", &header.pins}};
+      {"face_labels", &header.face_labels},       {"densities", &header.densities},
+      {"vertex_paint", &header.vertex_paint},     {"painted_edges", &header.painted_edges},
+      {"materials", &header.materials},           {"pins", &header.pins},
+      {"pin_kinds", &header.pin_kinds},           {"pin_directions", &header.pin_directions},
+      {"straight_edges", &header.straight_edges}, {"rectangles", &header.rectangles}};
   for (const auto& [name, buffer] : others) {
     if (buffer->data == nullptr) continue;
     throw Error(Fault::kInvalidArgument,
@@ -220,7 +222,15 @@ void EditSession::select(const beltrami_buffer* faces, std::uint64_t count) {
 }
 
 std::vector<Index> EditSession::read_charts(const beltrami_buffer* charts, std::uint64_t count) {
-  return read_indices(charts, count, 1, std::numeric_limits<Index>::max(), "charts");
+  if (count == 0) return {};
+  if (charts == nullptr) throw Error(Fault::kInvalidArgument, "charts are NULL");
+  std::vector<Index> ids;
+  // No chart has the greatest number: what is above it is none either.
+  constexpr std::uint64_t kNoChart = std::numeric_limits<Index>::max();
+  for (const std::uint64_t id : read_integers(*charts, count, 1, "charts", Work(1))) {
+    ids.push_back(static_cast<Index>(std::min(id, kNoChart)));
+  }
+  return ids;
 }
 
 void EditSession::lock(const beltrami_buffer* charts, std::uint64_t count, bool locked) {

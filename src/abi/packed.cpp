@@ -227,7 +227,17 @@ PackedMeshes pack_meshes(const std::vector<beltrami_uv_mesh>& headers, const Pac
   const double wall = wall_seconds(), cpu = cpu_seconds();
   PackedMeshes packed;
   UvMesh mesh = Reader(headers, work.named("read")).read(packed);
-  packed.result = pack_uvs(mesh, options, float32, work);
+  try {
+    packed.result = pack_uvs(mesh, options, float32, work);
+  } catch (const Error& error) {
+    if (error.element().kind != ElementKind::kFace) throw;
+    std::uint64_t face = error.element().index;
+    std::size_t m = 0;
+    for (; face >= headers[m].face_count; ++m) face -= headers[m].face_count;
+    throw Error(error.fault(),
+                "face " + std::to_string(face) + of_mesh(m, headers.size()) + ": " + error.what(),
+                Element::face(face));
+  }
   packed.faces = std::move(mesh.faces);
   packed.seconds = wall_seconds() - wall;
   packed.cpu_seconds = cpu_seconds() - cpu;

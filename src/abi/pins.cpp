@@ -66,6 +66,7 @@ std::vector<Pin> read_places(const beltrami_surface& header,
             {uvs[2 * i], uvs[2 * i + 1]},
             static_cast<Index>(i),
             static_cast<Index>(corners[i])};
+    pin.given = pin.uv;
     if (!kinds.empty()) hold_by(kinds[i], directions.empty() ? nullptr : &directions[2 * i], pin);
     require_number(pin, float32);
     pins.push_back(pin);
@@ -105,6 +106,7 @@ void hold_by(std::uint64_t kind, const double* direction, Pin& pin) {
                 corner);
   }
   // What says nothing is to do no harm.
+  pin.uv = pin.given;
   if (pin.kind == PinKind::kU) pin.uv.y() = 0;
   if (pin.kind == PinKind::kV) pin.uv.x() = 0;
 }

@@ -16,13 +16,17 @@
 namespace beltrami {
 namespace {
 
-/// Per corner a UV vertex of the atlas: that of a triangle that is judged, if one has the corner.
+/// Per corner a UV vertex of the atlas: that of a triangle that is judged, if one has the corner,
+/// or of one that lies on others, before what was set aside.
 std::vector<Index> uvs_of_corners(const LoadedSurface& surface, const Atlas& atlas) {
   std::vector<Index> uv_of_corner(surface.polygons.corners.size(), kNone);
   const std::vector<Triangle>& triangles = surface.triangulation.triangles;
-  for (const bool excepted : {false, true}) {
+  const auto rank = [&](std::size_t t) {
+    return !atlas.excepted[t] ? 0 : atlas.chart_of_face[t] != kNone ? 1 : 2;
+  };
+  for (const int own : {0, 1, 2}) {
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-      if (atlas.excepted[t] != excepted) continue;
+      if (rank(t) != own) continue;
       for (int k = 0; k < 3; ++k) {
         Index& uv = uv_of_corner[triangles[t][k]];
         if (uv == kNone) uv = atlas.faces[t][k];

@@ -177,8 +177,8 @@ std::vector<Index> firsts_of(Index vertex_count, const std::vector<Triangle>& fa
           {admitted.input_face[entries[e].face], admitted.input_face[entries[first].face]});
     }
   }
-  std::sort(admitted.copies.begin(), admitted.copies.end(),
-            [](const auto& a, const auto& b) { return a.face < b.face; });
+  sort_interruptibly(admitted.copies.begin(), admitted.copies.end(),
+                     [](const auto& a, const auto& b) { return a.face < b.face; });
   admitted.counts.copies = size_of(admitted.copies);
   return firsts;
 }

@@ -143,7 +143,9 @@ FilledSurface fill_holes(Surface surface, const Topology& topology, double limit
   if (loops.count() == 0) return filled;
   const std::vector<double> areas = component_areas(filled.surface, topology);
   std::vector<double> lengths;
+  PollSometimes poll;
   for (Index i = 0; i < loops.count(); ++i) {
+    poll();
     lengths.push_back(length_of(points_of(filled.surface, loop_of(loops, i))));
   }
   const std::vector<bool> is_outline = outlines_of(topology, lengths, areas);

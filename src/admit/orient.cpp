@@ -36,7 +36,11 @@ struct Turns {
 /// Turns all faces over if that leaves more of them as they are.
 void keep_majority(Turns turns) {
   std::size_t count = 0;
-  for (const Index f : turns.component) count += turns.reversed[f] ? 1 : 0;
+  PollSometimes poll;
+  for (const Index f : turns.component) {
+    poll();
+    count += turns.reversed[f] ? 1 : 0;
+  }
   if (2 * count <= turns.component.size()) return;
   for (const Index f : turns.component) turns.reversed[f] = !turns.reversed[f];
 }
@@ -47,13 +51,16 @@ void part_if_short(const std::vector<Vec3>& positions, const std::vector<Triangl
   const auto is_turned = [&](Index f) -> bool { return turns.reversed[f]; };
   if (std::none_of(turns.component.begin(), turns.component.end(), is_turned)) return;
   double greatest = 0, area = 0, length = 0;
+  PollSometimes poll;
   for (const Index f : turns.component) {
+    poll();
     for (const Index v : faces[f]) {
       greatest = std::max(greatest, positions[v].cwiseAbs().maxCoeff());
     }
   }
   std::vector<Index> border;
   for (const Index f : turns.component) {
+    poll();
     std::array<Vec3, 3> corner;  // of about unit size
     for (int k = 0; k < 3; ++k) corner[k] = positions[faces[f][k]] / greatest;
     area += triangle_area(corner[0], corner[1], corner[2]);

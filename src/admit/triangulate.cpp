@@ -48,7 +48,9 @@ class EdgeSet {
   void grow() {
     std::vector<std::uint64_t> old(2 * slots_.size(), 0);
     old.swap(slots_);
+    PollSometimes poll;
     for (const std::uint64_t key : old) {
+      poll();
       if (key != 0) place(key);
     }
   }

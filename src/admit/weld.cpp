@@ -162,7 +162,9 @@ std::vector<Index> weld(const std::vector<Vec3>& positions, double distance, con
     poll();
     greatest = std::max(greatest, p.cwiseAbs().maxCoeff());
   }
-  if (distance > std::ldexp(greatest, -50)) return weld_near(positions, distance, work);
+  // Half of the least number is 0.
+  const bool is_far = distance > std::ldexp(greatest, -50) && distance / kReach > 0;
+  if (is_far) return weld_near(positions, distance, work);
   return weld_equal(positions, PointTable(positions, work), work);
 }
 

@@ -148,6 +148,8 @@ void Collector::share() {
       for (int j = 0; j < 3; ++j) {
         if (admitted_.welded(faces_[first][j]) != admitted_.welded(faces_[copy][k])) continue;
         atlas_.faces[copy][k] = atlas_.faces[first][j];
+        Index& known = uv_of_[faces_[copy][k]];
+        if (known == kNone) known = atlas_.faces[copy][k];
       }
     }
   }
@@ -166,6 +168,8 @@ void Collector::stack(const std::vector<StackedFace>& stacked) {
       const Index on = atlas_.faces[face.on][face.corner[k]];
       const auto [known, is_new] = own.try_emplace({vertex, on}, size_of(atlas_.uvs));
       atlas_.faces[face.face][k] = known->second;
+      Index& known_uv = uv_of_[faces_[face.face][k]];
+      if (known_uv == kNone) known_uv = known->second;
       if (!is_new) continue;
       const Vec2 place = atlas_.uvs[on];
       atlas_.uvs.push_back(place);
@@ -243,9 +247,10 @@ void assemble(const AtlasInput& input, const AtlasOptions& options, const Admitt
     chart.density = placed.scales[c] * placed.maps[c].scale;
     chart.pinned = placed.maps[c].pinned();
   }
-  collector.put_aside(placed.surface.pins_aside);
   collector.stack(placed.surface.stacked);
   collector.share();
+  // What has no area lies beside any of these.
+  collector.put_aside(placed.surface.pins_aside);
   atlas.energy =
       measure_charts(placed.surface.charts, placed.maps, placed.page_scale, atlas.charts, work);
   // The means of charts count slivers that are too small in their component to have a say: so they

@@ -1,5 +1,6 @@
 #include "atlas/congruent.h"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,16 +35,25 @@ struct Measures {
   double area = 0, edges = 0;                           ///< in the unit of the whole
 };
 
+/// A piece that is congruent to none before it.
+struct First {
+  Index piece;
+  double edges;
+};
+
 Measures measures_of(const SurfacePiece& piece) {
   const Surface& surface = piece.surface;
   const double unit = std::ldexp(1.0, -piece.exponent);
   Measures measures;
   std::size_t borders = 0;
+  PollSometimes poll;
   for (Index h = 0; h < size_of(surface.twin); ++h) {
+    poll();
     measures.edges += unit * length(surface, h);
     if (surface.twin[h] == kNone) ++borders;
   }
   for (const auto& [a, b, c] : surface.faces) {
+    poll();
     const std::vector<Vec3>& p = surface.positions;
     measures.area += unit * unit * triangle_area(p[a], p[b], p[c]);
   }
@@ -61,7 +71,9 @@ class Laying {
   std::optional<Laid> run(bool reflected) {
     const std::int64_t most = looks_ + kLooks * size_of(from_.surface.twin);
     for (Index start = 0; start < size_of(to_.surface.twin) && looks_ <= most; ++start) {
-      if (lies(start, reflected)) return Laid{std::move(onto_), reflected};
+      if (lies(start, reflected) && moves_rigidly(reflected)) {
+        return Laid{std::move(onto_), reflected};
+      }
     }
     return std::nullopt;
   }
@@ -122,6 +134,37 @@ class Laying {
     return true;
   }
 
+  /// Whether one motion brings all vertices to where they are laid: edges of the same lengths may
+  /// be bent otherwise (Kabsch 1976).
+  bool moves_rigidly(bool reflected) {
+    const Surface &from = from_.surface, &to = to_.surface;
+    std::vector<std::pair<Vec3, Vec3>> pairs(from.positions.size());
+    for (Index h = 0; h < size_of(onto_); ++h) {
+      poll_();
+      const Index v = from.origin(h), w = reflected ? to.target(onto_[h]) : to.origin(onto_[h]);
+      pairs[v] = {from.positions[v], unit_ * to.positions[w]};
+    }
+    Vec3 middle = Vec3::Zero(), other = Vec3::Zero();
+    for (const auto& [p, q] : pairs) {
+      middle += p / static_cast<double>(pairs.size());
+      other += q / static_cast<double>(pairs.size());
+    }
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (const auto& [p, q] : pairs) covariance += (q - other) * (p - middle).transpose();
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
+                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
+    if ((turn.determinant() < 0) != reflected) {
+      Eigen::Matrix3d other_side = svd.matrixU();
+      other_side.col(2) *= -1;
+      turn = other_side * svd.matrixV().transpose();
+    }
+    return std::all_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+      poll_();
+      return (turn * (pair.first - middle) - (pair.second - other)).norm() <= kSameLength;
+    });
+  }
+
   const SurfacePiece& from_;
   const SurfacePiece& to_;
   const double unit_;  ///< of `to`, in that of `from`
@@ -148,21 +191,26 @@ std::optional<Laid> laid_onto(const SurfacePiece& from, const SurfacePiece& to, 
 
 std::vector<Index> first_congruent(const std::vector<SurfacePiece>& pieces) {
   std::vector<Index> first(pieces.size());
-  std::map<std::tuple<Index, Index, Index, std::size_t>, std::vector<std::pair<Index, Measures>>>
-      kinds;
+  std::map<std::tuple<Index, Index, Index, std::size_t>, std::multimap<double, First>> kinds;
   for (Index p = 0; p < size_of(pieces); ++p) {
     poll_interrupt();
     first[p] = p;
     if (pieces.size() == 1 || has_paint(pieces[p])) continue;
     const Measures own = measures_of(pieces[p]);
-    auto& kind = kinds[own.counts];
-    for (const auto& [other, measures] : kind) {
-      if (!is_near(own.area, measures.area) || !is_near(own.edges, measures.edges)) continue;
+    std::multimap<double, First>& kind = kinds[own.counts];  // by their areas
+    std::vector<Index> alike;
+    auto at = kind.lower_bound(own.area * (1 - 2 * kSameLength));
+    for (; at != kind.end() && at->first <= own.area * (1 + 2 * kSameLength); ++at) {
+      const bool is_alike = is_near(own.area, at->first) && is_near(own.edges, at->second.edges);
+      if (is_alike) alike.push_back(at->second.piece);
+    }
+    std::sort(alike.begin(), alike.end());
+    for (const Index other : alike) {
       if (!laid_onto(pieces[other], pieces[p], true)) continue;
       first[p] = other;
       break;
     }
-    if (first[p] == p) kind.emplace_back(p, own);
+    if (first[p] == p) kind.emplace(own.area, First{p, own.edges});
   }
   return first;
 }

@@ -102,7 +102,9 @@ SeamHints hints_for(const FilledSurface& filled, const std::vector<Index>& input
   for (const PaintedEdge& edge : given.edge_paint) {
     painted[ordered(admitted.welded(edge.ends[0]), admitted.welded(edge.ends[1]))] = edge.factor;
   }
+  PollSometimes poll;
   for (Index h = 0; h < 3 * filled.real_faces; ++h) {
+    poll();
     if (surface.edge(h) != h) continue;
     const Index a = surface.origin(h), b = surface.target(h);
     const auto found = painted.find(ordered(input[a], input[b]));

@@ -58,7 +58,9 @@ std::vector<Index> charts_of_faces(const UvMesh& mesh) {
   };
   DisjointSets sets(size_of(mesh.uvs));
   for (Index v = 0; v < size_of(mesh.uvs); ++v) sets.make(v);
+  PollSometimes poll;
   for (Index f = 0; f < size_of(mesh.faces); ++f) {
+    poll();
     if (!ties(f)) continue;
     sets.unite(mesh.faces[f][0], mesh.faces[f][1]);
     sets.unite(mesh.faces[f][1], mesh.faces[f][2]);
@@ -83,8 +85,7 @@ std::vector<Index> charts_of_faces(const UvMesh& mesh) {
 }
 
 [[noreturn]] void refuse_kept(Index face, const std::string& why) {
-  throw Error(Fault::kInvalidArgument,
-              "the chart of face " + std::to_string(face) + " cannot stay where it is: " + why,
+  throw Error(Fault::kInvalidArgument, "its chart cannot stay where it is: " + why,
               Element::face(static_cast<std::uint64_t>(face)));
 }
 

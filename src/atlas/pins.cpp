@@ -1,4 +1,5 @@
 #include "atlas/pins.h"
+#include "base/interrupt.h"
 
 #include <array>
 #include <charconv>
@@ -46,7 +47,9 @@ class Locator {
   }
 
   void locate(Index c, const AtlasChart& part) {
+    PollSometimes poll;
     for (Index f = 0; f < part.real_faces; ++f) {
+      poll();
       const Index input = admitted_.input_face[part.chart.input_face[f]];
       for (auto at = place_of_.lower_bound({input, 0});
            at != place_of_.end() && at->first.first == input; ++at) {

@@ -22,6 +22,7 @@ struct Pin {
   Index of_caller;  ///< polygon: that corner, as the caller counts
   PinKind kind = PinKind::kPoint;
   Vec2 along = Vec2::Zero();  ///< of kLine: its direction
+  Vec2 given = Vec2::Zero();  ///< as the caller gave it: of what a kind does not hold, too
 };
 
 /// A pin of a vertex of a chart.

@@ -183,10 +183,6 @@ double beyond_reason(const std::optional<SeamTarget>& target) {
   return target ? std::max(kMissedByFar, target->energy) : kBeyondReason;
 }
 
-bool is_hopeless(const AtlasChart& chart, const MappedChart& map, double most, const Work& work) {
-  return !is_sound(map) || measured({chart}, {map}, work).front().symmetric_dirichlet > most;
-}
-
 void sort_by_first_face(const Admitted& admitted, std::vector<AtlasChart>& charts,
                         std::vector<MappedChart>& maps) {
   std::vector<std::pair<Index, Index>> order;
@@ -248,8 +244,9 @@ bool split_hopeless(const Admitted& admitted, const PolygonParts& polygons, doub
                     const ChartOptions& options, const Work& work, std::vector<AtlasChart>& charts,
                     std::vector<MappedChart>& maps) {
   std::vector<Index> which;
+  const std::vector<ChartInfo> info = measured(charts, maps, work);
   for (Index c = 0; c < size_of(charts); ++c) {
-    if (is_hopeless(charts[c], maps[c], most, work)) which.push_back(c);
+    if (!is_sound(maps[c]) || info[c].symmetric_dirichlet > most) which.push_back(c);
   }
   return split_charts(admitted, polygons, which, options, work, charts, maps);
 }

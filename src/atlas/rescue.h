@@ -17,10 +17,6 @@ namespace beltrami {
 /// The mean energy above which a chart's map is of no use. `target`: that of the search, or none.
 double beyond_reason(const std::optional<SeamTarget>& target);
 
-/// Whether a chart has a map that is of no use: none, one that is not injective, or one whose mean
-/// energy is above `most`.
-bool is_hopeless(const AtlasChart& chart, const MappedChart& map, double most, const Work& work);
-
 /// Splits each of the charts `which` (increasing) in two halves of about the same size, or more
 /// where these are no disks, and maps the parts. Charts come out by their least face of the input.
 /// Returns whether there was one with more than one face. No seam runs inside a polygon, if there

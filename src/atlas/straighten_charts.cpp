@@ -13,6 +13,7 @@
 #include "atlas/open.h"
 #include "atlas/quad_grid.h"
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/types.h"
 #include "base/vectors.h"
 #include "chart/flattening.h"
@@ -177,7 +178,9 @@ class Straightening {
     if (asked_.empty()) return paths;
     const DiskMesh& mesh = part.chart.mesh;
     std::map<PinKind, PathFinder> finders;
+    PollSometimes poll;
     for (Index h = 0; h < 3 * part.real_faces; ++h) {
+      poll();
       const Index a = mesh.origin(h), b = mesh.target(h);
       const auto asked =
           asked_.find(in_order(input_vertex(part, admitted_, a), input_vertex(part, admitted_, b)));

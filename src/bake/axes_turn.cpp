@@ -118,7 +118,9 @@ std::vector<FaceAxis> corner_axes(const AxesOfCorners& of, std::span<const doubl
     return keys[a] != keys[b] ? is_before(keys[a], keys[b]) : a < b;
   });
   std::vector<FaceAxis> means = axes;
+  PollSometimes poll;
   for (std::size_t first = 0; first < corners;) {
+    poll();
     std::size_t end = first;
     Vector sum{};
     for (; end < corners && keys[order[end]] == keys[order[first]]; ++end) {
@@ -138,7 +140,9 @@ std::vector<FaceAxis> corner_axes(const AxesOfCorners& of, std::span<const doubl
 }
 
 void take_given(const AxesOfCorners& of, std::vector<FaceAxis>& axes) {
+  PollSometimes poll;
   for (std::size_t c = 0; 4 * c < of.tangents.size(); ++c) {
+    poll();
     const double* given = &of.tangents[4 * c];
     const Vector along = across({given[0], given[1], given[2]}, normal_at(of, c));
     if (!(dot(along, along) > 0)) continue;
@@ -153,7 +157,9 @@ std::vector<AxesTurn> axes_turns(const AxesOfCorners& corners, const Work& work)
   take_given(corners, before);
   const std::vector<FaceAxis> after = corner_axes(corners, corners.new_uvs, work);
   std::vector<AxesTurn> turns(before.size() / 3);
+  PollSometimes poll;
   for (std::size_t c = 0; c < before.size(); ++c) {
+    poll();
     AxesTurn& turn = turns[c / 3];
     turn.old_side = before[c].side;
     turn.new_side = after[c].side;

@@ -108,7 +108,9 @@ class Bake {
 
   void find_turns(const Work& work) {
     std::vector<double> old_uvs, new_uvs;
+    PollSometimes poll;
     for (std::size_t t = 0; t < problem_.new_uvs.size(); ++t) {
+      poll();
       for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t d = 0; d < 2; ++d) {
           old_uvs.push_back(problem_.sources[t].uvs[k][d]);

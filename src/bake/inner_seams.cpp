@@ -33,7 +33,9 @@ std::vector<std::uint8_t> inner_seams(std::span<const UvTriangle> triangles,
                                       std::span<const SourceTriangle> sources) {
   std::vector<SideOfTriangle> sides;
   sides.reserve(3 * triangles.size());
+  PollSometimes poll;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
+    poll();
     for (std::size_t k = 0; k < 3; ++k) {
       std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
       if (triangles[t][b] < triangles[t][a]) std::swap(a, b);
@@ -51,6 +53,7 @@ std::vector<std::uint8_t> inner_seams(std::span<const UvTriangle> triangles,
       });
   std::vector<std::uint8_t> seams(triangles.size(), 0);
   for (std::size_t i = 1; i < sides.size(); ++i) {
+    poll();
     const SideOfTriangle &a = sides[i - 1], &b = sides[i];
     if (a.ends != b.ends || (a.shown == b.shown && a.page == b.page)) continue;
     for (const SideOfTriangle* side : {&a, &b}) {

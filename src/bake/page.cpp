@@ -264,8 +264,8 @@ class Baker {
       texels[axis] = std::sqrt(u * u + v * v);
     }
     const auto places = [](double along) {
-      return along <= kStep ? 1
-                            : static_cast<int>(std::min<double>(std::ceil(along / kStep), kParts));
+      const double parts = std::ceil(along / kStep);
+      return along <= kStep ? 1 : parts < kParts ? static_cast<int>(parts) : kParts;
     };
     const double most = std::max(texels[0], texels[1]);
     const int level = level_for(most / kParts);

@@ -46,9 +46,10 @@ inline double floor_of(double x) {
 inline int texel_at(double place, int count, Beyond beyond) {
   const double size = count;
   if (place >= 0 && place < size) return static_cast<int>(place);
-  if (beyond == Beyond::kClamp) return static_cast<int>(std::clamp(place, 0.0, size - 1));
+  if (beyond == Beyond::kClamp) return place > 0 ? count - 1 : 0;
   const double period = beyond == Beyond::kRepeat ? size : 2 * size;
   const double first = place - period * std::floor(place / period);
+  if (!(first >= 0)) return 0;  // no double holds it, or the place itself
   // Rounding of a great number may leave the period.
   const auto texel = static_cast<int>(std::clamp(first, 0.0, period - 1));
   return texel < count ? texel : 2 * count - 1 - texel;

@@ -84,6 +84,7 @@ std::vector<NearBlock> Blocks::near(const std::vector<PlacedOutline>& charts, In
   const PlacedOutline& outline = charts[chart];
   std::vector<NearBlock> found;
   const std::size_t of_page = static_cast<std::size_t>(cells_) * cells_;
+  PollSometimes poll;
   for_each_within(outline, reach, [&](std::size_t block) {
     if (owner_[block] == kNone || owner_[block] == chart) return;
     const std::size_t at = block % of_page;
@@ -92,6 +93,7 @@ std::vector<NearBlock> Blocks::near(const std::vector<PlacedOutline>& charts, In
     const Box box(corner, Vec2(corner + Vec2::Constant(cell_)));
     NearBlock best{Vec2::Zero(), Vec2::Zero(), HUGE_VAL};
     for (const auto& [from, to] : outline.edges) {
+      poll();
       const NearBlock next = nearest(outline.points[from], outline.points[to], box);
       if (next.distance < best.distance) best = next;
     }

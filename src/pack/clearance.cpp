@@ -83,6 +83,7 @@ bool any_on_another(const std::vector<PlacedOutline>& charts) {
       if (charts[a].page != charts[b].page || !boxes[a].intersects(boxes[b])) continue;
       const auto lies_on = [&](Index upper, Index lower) {
         return std::any_of(parts[upper].begin(), parts[upper].end(), [&](const Vec2& p) {
+          poll_interrupt();  // a winding goes over all of a border
           return boxes[lower].contains(p) && winding(charts[lower], p) != 0;
         });
       };

@@ -186,6 +186,7 @@ Layout place_in_order(const std::vector<std::vector<Mask>>& masks, const Plan& p
       for (Floor& floor : floors) floor.reset();
     }
     for (Index p = 0; p < max_pages && spot.page == kNone; ++p) {
+      poll_interrupt();
       if (p == pages.size()) {
         pages.add(later[i]);
         floors.emplace_back();

@@ -275,8 +275,10 @@ class Growth {
     const auto opening = [&](Index b, const Vec2& arm, const Vec2& normal) {
       return normal.dot(moves[b].head<2>()) + cross(arm, normal) * moves[b].z();
     };
+    PollSometimes poll;
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       for (Contact& contact : contacts_) {
+        poll();
         double gap = contact.gap + opening(contact.first, contact.arm_first, contact.normal);
         if (contact.second != kNone) {
           gap -= opening(contact.second, contact.arm_second, contact.normal);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "base/interrupt.h"
@@ -140,11 +141,13 @@ void thin(Outline& outline, double width) {
   std::vector<std::array<Index, 2>> edges;
   std::vector<bool> seen(count, false);
   const auto is_plain = [&](Index p) { return in[p] == 1 && out[p] == 1; };
+  PollSometimes poll;
   const auto walk = [&](Index from, Index first) {
     // One edge after the other is added to the replaced ones, until one of their points is far.
     std::vector<Index> passed;
     Index start = from, here = first;
     for (;;) {
+      poll();
       const bool ends = !is_plain(here) || seen[here];
       if (!ends) seen[here] = true;
       const Index beyond = ends ? kNone : next[here];
@@ -188,15 +191,33 @@ void thin(Outline& outline, double width) {
 
 Vec2 turn_to_least_box(const std::vector<Vec2>& hull) {
   Vec2 best(1, 0);
+  if (hull.size() < 2) return best;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < hull.size() && hull.size() > 1; ++i) {
-    const Vec2 edge = hull[(i + 1) % hull.size()] - hull[i];
+  const auto after = [&](std::size_t i) { return i + 1 < hull.size() ? i + 1 : 0; };
+  // The points that are furthest along an edge, across it and against it go round with it
+  // (Toussaint 1983).
+  std::array<std::size_t, 3> furthest{};
+  bool are_found = false;
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Vec2 edge = hull[after(i)] - hull[i];
     const double length = portable::hypot(edge.x(), edge.y());
     if (!(length > 0)) continue;
-    const Vec2 along = edge / length;
-    Eigen::AlignedBox2d box;
-    for (const Vec2& p : hull) box.extend(Vec2(along.dot(p), cross(along, p)));
-    const Vec2 size = box.sizes();
+    const Vec2 along = edge / length, across(-along.y(), along.x());
+    const std::array<Vec2, 3> ways = {along, across, -along};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::size_t& far = furthest[k];
+      const auto reach = [&](std::size_t p) { return ways[k].dot(hull[p]); };
+      for (std::size_t p = 0; p < hull.size() && !are_found; ++p) {
+        if (reach(p) > reach(far)) far = p;
+      }
+      for (std::size_t step = 0; step < hull.size() && reach(after(far)) > reach(far); ++step) {
+        far = after(far);
+      }
+    }
+    are_found = true;
+    const double low = std::min(across.dot(hull[i]), across.dot(hull[after(i)]));
+    const Vec2 size(along.dot(hull[furthest[0]]) - along.dot(hull[furthest[2]]),
+                    across.dot(hull[furthest[1]]) - low);
     if (size.prod() < least) {
       least = size.prod();
       best = size.x() >= size.y() ? Vec2(along.x(), -along.y()) : Vec2(along.y(), along.x());

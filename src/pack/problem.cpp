@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/parallel.h"
 #include "base/portable_math.h"
 
@@ -264,7 +265,10 @@ std::vector<Page> Problem::kept_pages(double texels_per_unit) const {
                       std::to_string(kept.page) +
                       ", which is not among those that there may be: raise max-pages");
     }
-    while (size_of(pages) <= kept.page) pages.emplace_back(cells_, cells_);
+    while (size_of(pages) <= kept.page) {
+      poll_interrupt();
+      pages.emplace_back(cells_, cells_);
+    }
     const double density = texels_per_unit * charts_[c].scale / cell_;
     const Mask mask = mask_at(thinned_[c], kept.turn, density, radius() / cell_ + kThin,
                               kept.offset / cell_, cells_);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "base/sort_unique.h"
 #include "base/types.h"
 #include "exact/atlas_certificate.h"
@@ -127,10 +128,12 @@ void Parts::align() {
   collect();
   std::vector<bool> aligned(charts_.size(), false);
   aligned[leader()] = true;
+  PollSometimes poll;
   for (Index left = size_of(charts_) - 1; left > 0; --left) {
     // The part with the most vertices in common with those that lie already.
     std::vector<std::vector<std::pair<Vec2, Vec2>>> pairs(charts_.size());
     for (const std::vector<Place>& around : places_) {
+      poll();
       if (around.size() < 2) continue;
       for (const Place& one : around) {
         if (!aligned[one.part]) continue;
@@ -148,6 +151,7 @@ void Parts::align() {
     if (is_held_[next]) continue;
     const Similarity onto = fit_similarity(pairs[next], false);
     for (std::vector<Place>& around : places_) {
+      poll();
       for (Place& place : around) {
         if (place.part == next) place.uv = onto(place.uv);
       }
@@ -167,7 +171,8 @@ void Parts::place(Carried& carried) const {
       uv += place.uv / static_cast<double>(around.size());
       if (before_.may_move(part_.chart.input_face[place.face])) continue;
       if (held != nullptr && held->uv != place.uv) {
-        const Index face = ground_.admitted.input_face[part_.chart.input_face[place.face]];
+        const Index input = ground_.admitted.input_face[part_.chart.input_face[place.face]];
+        const Index face = ground_.name_of(input);
         throw Error(Fault::kInvalidState,
                     "a seam is closed between faces that may not move, and their UVs lie apart: "
                     "unlock or select one side, or open the seam again",

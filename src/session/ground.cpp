@@ -56,6 +56,8 @@ Ground make_ground(const std::vector<Vec3>& positions, std::vector<Triangle> fac
   ground.exponent = bring_to_unit(admitted.surface, work);
   ground.inside = edges_inside(admitted, options);
   ground.fill_limit = options.fill_limit;
+  const auto& polygons = options.admit.polygons.polygon;
+  ground.polygon_of.assign(polygons.begin(), polygons.end());
   ground.face_of.assign(faces.size(), kNone);
   for (Index f = 0; f < ground.face_count(); ++f) ground.face_of[admitted.input_face[f]] = f;
   for (Index h = 0; h < size_of(admitted.surface.twin); ++h) {

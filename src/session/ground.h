@@ -18,14 +18,19 @@ struct Ground {
   Admitted admitted;  ///< of about unit area
   int exponent = 0;   ///< it was scaled by that power of two
   std::vector<Triangle> input_faces;
-  EdgeMarks inside;            ///< edges inside polygons, which are not to be cut; or none
-  double fill_limit = 0.5;     ///< as AtlasOptions has it
-  std::vector<Index> face_of;  ///< per face of the input that of the surface, or kNone
+  EdgeMarks inside;               ///< edges inside polygons, which are not to be cut; or none
+  double fill_limit = 0.5;        ///< as AtlasOptions has it
+  std::vector<Index> face_of;     ///< per face of the input that of the surface, or kNone
+  std::vector<Index> polygon_of;  ///< per face of the input the caller's; none where it is that
   /// Half-edges by the ends of their edge, vertices of the input as they were welded, the lesser
   /// one first: in order, those of one edge next to each other.
   std::vector<std::pair<std::array<Index, 2>, Index>> edges;
 
   Index face_count() const { return admitted.surface.face_count(); }
+  /// What the caller calls a face of the input: for messages.
+  Index name_of(Index input_face) const {
+    return polygon_of.empty() ? input_face : polygon_of[input_face];
+  }
   /// The half-edges of an edge of the input; none where there is no such edge.
   std::vector<Index> halfedges_between(Index a, Index b) const;
   /// The corner of the input that corner k of a face of the surface is, 3 * face + corner.

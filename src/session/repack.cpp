@@ -15,6 +15,7 @@
 #include "chart/flattening.h"
 #include "pack/types.h"
 #include "pins/similarity.h"
+#include "session/ground.h"
 #include "session/session.h"
 #include "session/stack.h"
 #include "session/state.h"
@@ -167,7 +168,18 @@ void Repacker::lay(Index c) {
 }
 
 Outcome Repacker::run(PackOptions options, const Work& work) {
-  const PackedUvs packed = pack_uvs(mesh(), options, session_.float32_, work);
+  const PackedUvs packed = [&] {
+    try {
+      return pack_uvs(mesh(), options, session_.float32_, work);
+    } catch (const Error& error) {
+      if (error.element().kind != ElementKind::kFace) throw;
+      const Ground& ground = session_.ground_;
+      const auto own = static_cast<Index>(error.element().index);
+      const Index face = ground.name_of(ground.admitted.input_face[own]);
+      throw Error(error.fault(), "face " + std::to_string(face) + ": " + error.what(),
+                  Element::face(static_cast<std::uint64_t>(face)));
+    }
+  }();
   for (Index c = 0; c < size_of(next_.charts); ++c) {
     if (moves_[c] && on_[c] == kNone) take(c, packed);
   }
@@ -192,7 +204,7 @@ bool Repacker::lies_on_pages(const Work& work) const {
 
 Outcome Session::pack(std::span<const Index> ids, const PackOptions& options, const Work& work) {
   std::vector<bool> moves(state_.charts.size(), ids.empty());
-  for (const Index id : ids) moves[index_of(id)] = true;
+  for (const Index c : indices_of(ids)) moves[c] = true;
   for (Index c = 0; c < size_of(state_.charts); ++c) {
     const SessionChart& chart = state_.charts[c];
     if (!chart.placed) {
@@ -225,9 +237,18 @@ Outcome Session::pack(std::span<const Index> ids, const PackOptions& options, co
     commit(repacker.result());
     return outcome;
   } catch (const Error& error) {
-    if (error.fault() != Fault::kNoRoom || !some_stay || !repacker.lies_on_pages(work)) throw;
-    changes_.clear();
-    return Outcome::kOk;
+    if (error.fault() != Fault::kNoRoom) throw;
+    if (some_stay && repacker.lies_on_pages(work)) {
+      changes_.clear();
+      return Outcome::kOk;
+    }
+    if (!some_stay && !keeps_scale) throw;
+    // Neither texels per unit nor the resolution say how large they are.
+    throw Error(
+        Fault::kNoRoom,
+        "the charts have no room at the size of those that stay, or keep their scale: raise "
+        "max-pages, or let more of them move and be scaled",
+        error.element());
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -136,18 +137,23 @@ void Session::select(std::span<const Index> faces) {
   }
 }
 
-Index Session::index_of(Index id) const {
-  for (Index c = 0; c < size_of(state_.charts); ++c) {
-    if (state_.charts[c].id == id) return c;
+std::vector<Index> Session::indices_of(std::span<const Index> ids) const {
+  std::map<Index, Index> of_id;
+  for (Index c = 0; c < size_of(state_.charts); ++c) of_id[state_.charts[c].id] = c;
+  std::vector<Index> indices;
+  for (const Index id : ids) {
+    const auto found = of_id.find(id);
+    if (found == of_id.end()) {
+      refuse("there is no chart of the number " + std::to_string(id) +
+             ": numbers of charts that have gone are not given again");
+    }
+    indices.push_back(found->second);
   }
-  refuse("there is no chart of the number " + std::to_string(id) +
-         ": numbers of charts that have gone are not given again");
+  return indices;
 }
 
 void Session::lock(std::span<const Index> ids, bool locked) {
-  std::vector<Index> indices;
-  for (const Index id : ids) indices.push_back(index_of(id));
-  for (const Index c : indices) {
+  for (const Index c : indices_of(ids)) {
     const SessionChart& chart = state_.charts[c];
     for (Index f = 0; f < chart.faces(); ++f) {
       state_.locked[chart.part->chart.input_face[f]] = locked;
@@ -156,9 +162,7 @@ void Session::lock(std::span<const Index> ids, bool locked) {
 }
 
 void Session::set_flags(std::span<const Index> ids, std::uint8_t flags) {
-  std::vector<Index> indices;
-  for (const Index id : ids) indices.push_back(index_of(id));
-  for (const Index c : indices) {
+  for (const Index c : indices_of(ids)) {
     SessionChart& chart = state_.charts[c];
     const bool turns = (flags & ~state_.flags_of(chart) & kAlign) != 0;
     if (turns && chart.due == Due::kNothing) chart.due = Due::kWarm;
@@ -169,9 +173,7 @@ void Session::set_flags(std::span<const Index> ids, std::uint8_t flags) {
 }
 
 void Session::renew(std::span<const Index> ids, bool cold) {
-  std::vector<Index> indices;
-  for (const Index id : ids) indices.push_back(index_of(id));
-  for (const Index c : indices)
+  for (const Index c : indices_of(ids))
     state_.charts[c].due = cold ? Due::kCold : std::max(state_.charts[c].due, Due::kWarm);
 }
 

@@ -103,7 +103,7 @@ class Session {
  private:
   friend class Updater;
   friend class Repacker;
-  Index index_of(Index id) const;
+  std::vector<Index> indices_of(std::span<const Index> ids) const;
   /// Takes a state over, and finds what it changes.
   void commit(SessionState next);
 

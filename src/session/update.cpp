@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <tuple>
 
@@ -33,10 +34,11 @@ constexpr double kCut = 0.1;  // where cutting ends in the progress
 constexpr double kSettled = 1e-3;
 
 /// The failure of a chart, which is named by its first face.
-Error named(const Error& error, const SessionChart& chart) {
+Error named(const Error& error, const Ground& ground, const SessionChart& chart) {
   if (error.element().kind != ElementKind::kNothing) return error;
-  return {error.fault(), "the chart of face " + std::to_string(chart.first) + ": " + error.what(),
-          Element::face(static_cast<std::uint64_t>(chart.first))};
+  const Index face = ground.name_of(chart.first);
+  return {error.fault(), "the chart of face " + std::to_string(face) + ": " + error.what(),
+          Element::face(static_cast<std::uint64_t>(face))};
 }
 
 /// Relative to the coordinates: a line goes through few numbers.
@@ -176,11 +178,9 @@ void Updater::number(std::vector<SessionChart>& fresh) {
     for (const auto& [old, count] : faces) shares.emplace_back(-count, next_.charts[old].id, c);
   }
   std::sort(shares.begin(), shares.end());
-  std::vector<Index> given;
+  std::set<Index> given;
   for (const auto& [faces, id, c] : shares) {
-    if (fresh[c].id != kNone || std::find(given.begin(), given.end(), id) != given.end()) continue;
-    fresh[c].id = id;
-    given.push_back(id);
+    if (fresh[c].id == kNone && given.insert(id).second) fresh[c].id = id;
   }
   for (SessionChart& chart : fresh) {
     if (chart.id == kNone) chart.id = next_.next_id++;
@@ -288,7 +288,7 @@ void Updater::map(Job& job, const Work& work) const {
     }
     job.draft = std::move(made.draft);
   } catch (const Error& error) {
-    job.error = named(error, chart);
+    job.error = named(error, session_.ground_, chart);
   }
 }
 

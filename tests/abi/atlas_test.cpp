@@ -300,6 +300,32 @@ TEST(AbiAtlas, StacksGoWithNothingThatIsAskedOfTheWhole) {
   }
 }
 
+TEST(AbiAtlas, WhatHasNoAreaLiesBesideWhatIsStacked) {
+  // Two quads, each with an edge of no length: one of its triangles has no area.
+  const std::vector<double> positions = {0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0,
+                                         5, 0, 0, 5, 0, 0, 6, 0, 0, 5, 1, 0};
+  const std::vector<std::uint32_t> indices = {0, 1, 2, 3, 4, 5, 6, 7};
+  const std::vector<std::uint64_t> sizes = {4, 4};
+  auto surface = sized<beltrami_surface>();
+  surface.vertex_count = 8;
+  surface.face_count = 2;
+  surface.corner_count = 8;
+  surface.positions = {positions.data(), 0, BELTRAMI_F64, 0};
+  surface.indices = {indices.data(), 0, BELTRAMI_U32, 0};
+  surface.face_sizes = {sizes.data(), 0, BELTRAMI_U64, 0};
+  const Context context = create();
+  set_option(context, BELTRAMI_OPTION_STACK, BELTRAMI_STACK_COPIES);
+  ASSERT_EQ(unwrap(context, surface), BELTRAMI_OK) << message(context);
+  EXPECT_EQ(atlas_of(context).stacked_parts, 1u);
+  const std::vector<double> uvs = corner_uvs(context);
+  const auto area = [&](std::size_t first) {  // of the triangle of corners 0, 2 and 3 of a quad
+    const double* a = &uvs[2 * first];
+    return (a[4] - a[0]) * (a[7] - a[1]) - (a[5] - a[1]) * (a[6] - a[0]);
+  };
+  EXPECT_GT(std::abs(area(0)), 0.1);
+  EXPECT_NEAR(std::abs(area(4)), std::abs(area(0)), 1e-6);
+}
+
 TEST(AbiAtlas, CubesThatAreStackedHaveTheSameUvs) {
   const QuadCube one;
   TriangleList both = one.corners;

@@ -62,6 +62,19 @@ TEST(Bake, TheSameUvsGiveTheSameImage) {
   }
 }
 
+TEST(Bake, WhatLiesFarBeyondAllTexelsShowsNone) {
+  for (const double far : {1e15, 1e100, 1.7e308}) {
+    for (const bool nearest : {false, true}) {
+      Square square;
+      const std::vector<double> old(square.uvs.size(), far);
+      square.job.old_uvs = {old.data(), 0, BELTRAMI_F64, 0};
+      if (nearest) square.job.filter = BELTRAMI_FILTER_NEAREST;
+      const beltrami_status status = square.bake();
+      EXPECT_EQ(status == BELTRAMI_OK, far == 1e15) << far << message(square.context);
+    }
+  }
+}
+
 TEST(Bake, RowsMayBeApart) {
   Square square;
   std::vector<std::uint8_t> wide(100 * kSide, 9);

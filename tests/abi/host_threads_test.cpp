@@ -101,6 +101,20 @@ TEST(HostThreads, GiveTheSameBitsAtOneTwoAndSeven) {
   }
 }
 
+TEST(HostThreads, AreThoseOfSessionsToo) {
+  const TriangleList mesh = meshes::bumps(60, 60);
+  const Context context = create();
+  set_option(context, BELTRAMI_OPTION_THREADS, 3);
+  Jobs jobs;
+  ASSERT_EQ(beltrami_set_parallel_for(context.get(), &Jobs::run, &jobs), BELTRAMI_OK);
+  const beltrami_surface surface = surface_view(mesh);
+  ASSERT_EQ(beltrami_session_begin(context.get(), &surface, nullptr, nullptr), BELTRAMI_OK);
+  const int begun = jobs.loops;
+  EXPECT_GT(begun, 0);
+  ASSERT_EQ(beltrami_session_update(context.get(), 0, 0, nullptr, nullptr), BELTRAMI_OK);
+  EXPECT_GT(jobs.loops, begun);
+}
+
 TEST(HostThreads, MayRunJobsInAnyOrderAndOnAnyThread) {
   const TriangleList disk = meshes::bumps(30, 30);
   const auto map = flattened(disk, 1, nullptr);

@@ -389,6 +389,11 @@ TEST(AbiPacking, RefusesWhatItCannotRead) {
   apart.kept = {0, 0, 0};
   EXPECT_EQ(pack(context, {apart.view()}), BELTRAMI_E_INVALID_ARGUMENT) << "beyond its page";
   EXPECT_EQ(beltrami_error_element(context.get()), 1u);
+  Confetti inside(1);
+  inside.kept = {0};
+  EXPECT_EQ(pack(context, {inside.view(), apart.view()}), BELTRAMI_E_INVALID_ARGUMENT);
+  EXPECT_EQ(beltrami_error_element(context.get()), 1u) << "counted in its mesh";
+  EXPECT_NE(message(context).find("face 1 of mesh 1"), std::string::npos) << message(context);
   auto empty = good.view();
   empty.face_count = 0;
   EXPECT_EQ(pack(context, {empty}), BELTRAMI_E_EMPTY);

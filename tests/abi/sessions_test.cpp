@@ -296,6 +296,46 @@ TEST(Sessions, RefuseWhatThereIsNot) {
   EXPECT_EQ(beltrami_error_element(context.get()), 4u);
 }
 
+TEST(Sessions, NumbersOfNoChartAreRefusedAsSuch) {
+  const Context context = begun(meshes::grid(3, 3));
+  for (const std::uint64_t id : {std::uint64_t{0x7FFFFFFF}, std::uint64_t{BELTRAMI_NO_ELEMENT}}) {
+    const beltrami_buffer charts = {&id, 0, BELTRAMI_U64, 0};
+    EXPECT_EQ(beltrami_session_lock(context.get(), &charts, 1, 1), BELTRAMI_E_INVALID_ARGUMENT);
+    EXPECT_NE(message(context).find("there is no chart"), std::string::npos) << message(context);
+  }
+}
+
+TEST(Sessions, PinsKeepTheirPlacesWhateverTheirKind) {
+  const Context context = begun(meshes::grid(3, 3));
+  const Numbers corner = {4};
+  const double place[2] = {0.3, 0.7};
+  const beltrami_buffer corners = numbers_of(corner), uv = {place, 0, BELTRAMI_F64, 0};
+  ASSERT_EQ(beltrami_session_set_pins(context.get(), &corners, &uv, 1), BELTRAMI_OK);
+  for (const std::uint32_t kind : {BELTRAMI_PIN_U, BELTRAMI_PIN_V, BELTRAMI_PIN_POINT}) {
+    const Numbers kinds = {kind};
+    const beltrami_buffer given = numbers_of(kinds);
+    ASSERT_EQ(beltrami_session_set_pin_kinds(context.get(), &given, nullptr, 1), BELTRAMI_OK)
+        << message(context);
+  }
+  ASSERT_EQ(update(context), BELTRAMI_OK) << message(context);
+  EXPECT_EQ(session_uvs(context)[4], (std::array<double, 2>{0.3, 0.7}));
+}
+
+TEST(Sessions, TakeNothingOfTheSurfaceThatTheyDoNotKeep) {
+  const TriangleList mesh = meshes::grid(3, 3);
+  const Numbers some = {0, 1, 2, 3};
+  for (beltrami_buffer beltrami_surface::*member :
+       {&beltrami_surface::pin_kinds, &beltrami_surface::pin_directions,
+        &beltrami_surface::straight_edges, &beltrami_surface::rectangles}) {
+    const Context context = create();
+    beltrami_surface surface = surface_view(mesh);
+    surface.*member = numbers_of(some);
+    EXPECT_EQ(beltrami_session_begin(context.get(), &surface, nullptr, nullptr),
+              BELTRAMI_E_INVALID_ARGUMENT);
+    EXPECT_NE(message(context).find("a session takes no"), std::string::npos);
+  }
+}
+
 TEST(Sessions, FlagsAreThoseThatWereGivenLast) {
   const Context context = begun(meshes::grid(3, 3));
   const std::uint64_t id = first_chart(context);

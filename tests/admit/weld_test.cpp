@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,13 @@ namespace {
 TEST(Weld, EqualPositionsBecomeTheFirstOfThem) {
   const std::vector<Vec3> positions = {{1, 2, 3}, {0, 0, 0}, {1, 2, 3}, {-0.0, 0, -0.0}, {1, 3, 2}};
   EXPECT_EQ(weld(positions, 0, Work(1)), (std::vector<Index>{0, 1, 0, 1, 4}));
+}
+
+TEST(Weld, TheLeastDistanceIsNone) {
+  const double least = std::numeric_limits<double>::denorm_min();
+  const std::vector<Vec3> positions = {{0, 0, 0}, {1e-310, 0, 0}, {0, 0, 0}};
+  EXPECT_EQ(weld(positions, least, Work(1)), (std::vector<Index>{0, 1, 0}));
+  EXPECT_EQ(weld({{0, 0, 0}, {0, 0, 0}}, least, Work(1)), (std::vector<Index>{0, 0}));
 }
 
 TEST(Weld, ADistanceHoldsAlongChains) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <utility>
@@ -75,6 +76,26 @@ TEST(Congruent, PiecesAreInAnyOrderAndPlaceAndReflected) {
       piece_of(meshes::moved(blob(), [](const Vec3& p) { return Vec3(1.5 * p); })),
       piece_of(copied(reflected(other), 2))};
   EXPECT_EQ(first_congruent(pieces), (std::vector<Index>{0, 1, 0, 0, 4, 1}));
+}
+
+/// A square of two triangles, bent by an angle at its diagonal.
+TriangleList leaf(double angle) {
+  const double half = std::sqrt(0.5);
+  return {{{0, -half, 0},
+           {half, 0, 0},
+           {0, half, 0},
+           {-half * std::cos(angle), 0, half * std::sin(angle)}},
+          {{0, 1, 2}, {2, 3, 0}}};
+}
+
+TEST(Congruent, EdgesOfTheSameLengthsAreNotEnough) {
+  const std::vector<SurfacePiece> pieces = {piece_of(leaf(0)), piece_of(leaf(1)),
+                                            piece_of(copied(leaf(1), 1)), piece_of(leaf(-1)),
+                                            piece_of(leaf(1.01))};
+  // Bent to the other side it would have to be turned inside out.
+  EXPECT_EQ(first_congruent(pieces), (std::vector<Index>{0, 1, 1, 3, 4}));
+  EXPECT_TRUE(laid_onto(pieces[1], pieces[2], false));
+  EXPECT_FALSE(laid_onto(pieces[1], pieces[0], true));
 }
 
 TEST(Congruent, LabelsAndLockedEdgesBelongToTheShape) {

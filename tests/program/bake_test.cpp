@@ -391,6 +391,64 @@ TEST(Bake, AnObjBecomesGltfWithItsMaterials) {
             std::string::npos);
 }
 
+TEST(Bake, FacesWithoutUvsAreBesideThoseWithTextures) {
+  const TemporaryDirectory directory;
+  directory.file("a.mtl", "newmtl wood\nmap_Kd wood.png\nnewmtl gr\xfcn\nKd 0 1 0\n");
+  directory.file("wood.png", png_of(16, smooth));
+  const std::string in = directory.file(
+      "a.obj",
+      "mtllib a.mtl\nmtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 1 1 1\n"
+      "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl wood\nf 1/1 2/2 3/3 4/4\n"
+      "usemtl gr\xfcn\nf 2 5 6\nusemtl other\nf 2 6 3\n");
+  const std::string glb = directory.path("out.glb");
+  const Outcome outcome = run({"unwrap", in, glb, "--bake", "--resolution", "64"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("gone.mtl"), std::string::npos) << outcome.err;
+  const Parts parts(directory.read("out.glb"));
+  ASSERT_EQ(parts.json["materials"].size(), 3u);
+  EXPECT_TRUE(parts.json["materials"][0]["pbrMetallicRoughness"].contains("baseColorTexture"));
+  EXPECT_EQ(parts.json["materials"][1]["name"], "gr\xc3\xbcn");
+  EXPECT_EQ(parts.json["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"],
+            Json({0.0, 1.0, 0.0, 1.0}));
+  EXPECT_EQ(parts.json["materials"][2]["name"], "other");
+  EXPECT_EQ(parts.json["meshes"][0]["primitives"].size(), 3u);
+}
+
+TEST(Bake, AnImageOutOfReachIsMissing) {
+  const TemporaryDirectory directory;
+  directory.file("a.mtl",
+                 "newmtl wood\nmap_Kd wood.png\nnewmtl far\nmap_Kd C:\\textures\\far.png\n");
+  directory.file("wood.png", png_of(16, smooth));
+  const std::string in =
+      directory.file("a.obj",
+                     "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
+                     "vt 0 1\nusemtl wood\nf 1/1 2/2 3/3\nusemtl far\nf 1/1 3/3 4/4\n");
+  const Outcome outcome =
+      run({"unwrap", in, directory.path("out.obj"), "--bake", "--resolution", "64"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("far.png"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("its name stays"), std::string::npos) << outcome.err;
+}
+
+TEST(Bake, LabelsOfObjCutWhatBecomesGltf) {
+  const TemporaryDirectory directory;
+  const std::string in =
+      directory.file("a.obj",
+                     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
+                     "g a\nusemtl x\nf 1 2 3 4\ng b\nf 2 6 3\nusemtl y\nf 2 5 6\n");
+  const auto charts = [&](const char* output, const std::string& labels) {
+    const std::string report = directory.path("r.json");
+    const Outcome outcome =
+        run({"unwrap", in, directory.path(output), "--labels", labels, "--report", report});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return Json::parse(directory.read("r.json"))["charts"];
+  };
+  for (const char* labels : {"groups", "materials"}) {
+    EXPECT_EQ(charts("o.obj", labels), 2) << labels;
+    EXPECT_EQ(charts("o.glb", labels), 2) << labels;
+  }
+}
+
 TEST(Bake, MapsOfMtlAreChannelsOfGltf) {
   const TemporaryDirectory directory;
   directory.file("a.mtl",

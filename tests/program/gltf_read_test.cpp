@@ -155,7 +155,8 @@ TEST(GltfRead, OtherFormatsKeepTheTrianglesAndSaySo) {
   builder.mesh({{"POSITION", square(builder)}}, builder.indices<std::uint8_t>({0, 1, 2}));
   const MeshFile file = read_bytes(builder);
   EXPECT_EQ(not_kept(file, "a.ply"),
-            std::vector<std::string>{"nodes, materials, textures and animations of glTF"});
+            std::vector<std::string>{
+                "nodes, materials, textures, animations and attributes of vertices of glTF"});
   EXPECT_TRUE(not_kept(file, "a.glb").empty());
 }
 

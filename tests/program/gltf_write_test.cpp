@@ -115,6 +115,19 @@ TEST(GltfWrite, PrimitivesWithTheSameVerticesAreSplitTogether) {
   EXPECT_EQ(parts.json["nodes"], builder.json["nodes"]);
 }
 
+TEST(GltfWrite, WhatHasNoIndicesDrawsNoCopies) {
+  GltfBuilder builder;
+  const Json attributes = {{"POSITION", builder.vectors3({0, 0, 0, 1, 0, 0, 1, 1, 0})}};
+  builder.json["meshes"] = {{{"primitives", {{{"attributes", attributes}}}}},
+                            {{"primitives", {{{"attributes", attributes}}}}}};
+  builder.json["nodes"] = {{{"mesh", 0}}, {{"mesh", 1}}};
+  const Parts parts = written(builder, {0, 1, 2, 3, 4, 5});
+  EXPECT_EQ(parts.count(parts.primitive(0)["attributes"]["POSITION"]), 6u);
+  using Numbers = std::vector<std::uint16_t>;
+  EXPECT_EQ(parts.values<std::uint16_t>(parts.primitive(0)["indices"], 1, 1), (Numbers{0, 1, 2}));
+  EXPECT_EQ(parts.values<std::uint16_t>(parts.primitive(1)["indices"], 1, 1), (Numbers{3, 4, 5}));
+}
+
 TEST(GltfWrite, IndicesGrowWhereTheyMust) {
   GltfBuilder builder;
   const int positions = builder.vectors3({0, 0, 0, 1, 0, 0, 0, 1, 0});

@@ -40,12 +40,22 @@ TEST(KeptInObj, EverythingButTextureCoordinates) {
 
 TEST(KeptInObj, NamesInAnotherEncodingBecomeUtf8) {
   const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  const MeshFile latin = obj(mesh + "usemtl gr\xfcn\nf 1 2 3\n");
-  EXPECT_EQ(latin.statements[0].text, "usemtl gr\xc3\xbcn");
+  const MeshFile latin = obj(mesh + "g gr\xfcn\nf 1 2 3\n");
+  EXPECT_EQ(latin.statements[0].text, "g gr\xc3\xbcn");
   EXPECT_EQ(not_kept(latin, "a.obj"), Words{"the encoding of names (Latin-1 becomes UTF-8)"});
   const MeshFile utf8 = obj(mesh + "usemtl gr\xc3\xbcn \xe2\x82\xac\nf 1 2 3\n");
   EXPECT_EQ(utf8.statements[0].text, "usemtl gr\xc3\xbcn \xe2\x82\xac");
   EXPECT_EQ(not_kept(utf8, "a.obj"), Words{});
+}
+
+TEST(KeptInObj, NamesThatOtherFilesHaveKeepTheirBytes) {
+  const MeshFile latin =
+      obj("mtllib gr\xfcn.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl gr\xfcn\nf 1 2 3\n");
+  EXPECT_EQ(latin.statements[1].text, "usemtl gr\xc3\xbcn");
+  const std::string text = written(latin, "a.obj");
+  EXPECT_NE(text.find("mtllib gr\xfcn.mtl\n"), std::string::npos);
+  EXPECT_NE(text.find("usemtl gr\xfcn\n"), std::string::npos);
+  EXPECT_EQ(not_kept(latin, "a.obj"), Words{});
 }
 
 TEST(KeptInObj, WhateverTheOrderAndTheNumbering) {

@@ -298,11 +298,12 @@ class Writer {
     }
   }
 
-  /// A strip or a fan with a split vertex is none any more: all of them become triangles.
+  /// A strip or a fan with a split vertex is none any more: all of them become triangles. What has
+  /// no indices would draw the copies of vertices, too, where others that share them were split.
   void edit_indices(const Primitive& place, const Item& before, Json& primitive) {
     const bool strip = before.whole("mode", kTriangles) != kTriangles;
     const std::uint64_t first = 3 * place.first_face, end = first + 3 * place.face_count;
-    bool same = !strip;
+    bool same = !strip && (before.whole("indices") || split_.copies[place.set].empty());
     for (std::uint64_t c = first; same && c < end; ++c) {
       same = split_.corners[c] == model_.local[file_.polygons.corners()[c]];
     }

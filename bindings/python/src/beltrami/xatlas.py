@@ -139,7 +139,9 @@ class Atlas:
             shaped("normals", normals, 3, len(points))
         if uvs is not None:
             uvs = _arrays.coordinates(shaped("uvs", uvs, 2, len(points)))
-        self._add(AddedMesh(points, faces, uvs))
+        # The arrays are the caller's to fill anew before `generate`.
+        copies = (points.copy(), faces.copy(), None if uvs is None else uvs.copy())
+        self._add(AddedMesh(*copies))
 
     def add_uv_mesh(
         self,
