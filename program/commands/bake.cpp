@@ -136,6 +136,7 @@ void TextureBake::list_textures(std::vector<TextureUse> uses) {
     try {
       path = libraries_ ? libraries_->image_path(use) : gltf_image_path(file_, use);
     } catch (const Failure& failure) {
+      if (failure.exit_code == kExitCancelled) throw;
       refusal = failure.what();
     }
     std::error_code ignored;

@@ -163,8 +163,8 @@ std::vector<Index> weld(const std::vector<Vec3>& positions, double distance, con
     greatest = std::max(greatest, p.cwiseAbs().maxCoeff());
   }
   // Half of the least number is 0.
-  const bool is_far = distance > std::ldexp(greatest, -50) && distance / kReach > 0;
-  if (is_far) return weld_near(positions, distance, work);
+  const bool has_cells = distance > std::ldexp(greatest, -50) && distance / kReach > 0;
+  if (has_cells) return weld_near(positions, distance, work);
   return weld_equal(positions, PointTable(positions, work), work);
 }
 

@@ -138,7 +138,7 @@ class Laying {
   /// be bent otherwise (Kabsch 1976).
   bool moves_rigidly(bool reflected) {
     const Surface &from = from_.surface, &to = to_.surface;
-    std::vector<std::pair<Vec3, Vec3>> pairs(from.positions.size());
+    std::vector<std::pair<Vec3, Vec3>> pairs(from.positions.size(), {Vec3::Zero(), Vec3::Zero()});
     for (Index h = 0; h < size_of(onto_); ++h) {
       poll_();
       const Index v = from.origin(h), w = reflected ? to.target(onto_[h]) : to.origin(onto_[h]);
