@@ -132,19 +132,16 @@ TextureBake::TextureBake(const MeshFile& file, const std::string& output, bool m
 
 void TextureBake::list_textures(std::vector<TextureUse> uses) {
   for (TextureUse& use : uses) {
-    std::string path, refusal;
+    std::string path;
     try {
       path = libraries_ ? libraries_->image_path(use) : gltf_image_path(file_, use);
     } catch (const Failure& failure) {
       if (failure.exit_code == kExitCancelled) throw;
-      refusal = failure.what();
-    }
-    std::error_code ignored;
-    if (!refusal.empty()) {
-      missing_.push_back(refusal + " (" + use.name +
+      missing_.push_back(std::string(failure.what()) + " (" + use.name +
                          "): its name stays, and nothing is baked for it");
       continue;
     }
+    std::error_code ignored;
     if (!path.empty() && !fs::exists(path, ignored)) {
       missing_.push_back(path + " (" + use.name +
                          ") is missing: its name stays, and nothing is baked for it; put the "

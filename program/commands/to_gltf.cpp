@@ -184,7 +184,8 @@ class ToGltf {
 
   void add_materials() {
     const MaterialLibraries libraries(mesh_, false);
-    for (const std::string& what : libraries.unread()) not_kept_.push_back("materials: " + what);
+    for (const std::string& what : libraries.unread())
+      not_kept_.push_back("materials (" + what + ")");
     const std::vector<std::uint64_t> of_face = libraries.material_of_faces();
     std::vector<std::uint64_t> number(libraries.count(), kNoMaterial);
     for (const std::uint64_t material : of_face) {
@@ -381,7 +382,7 @@ class ToGltf {
     const bool per_vertex = of_corner.empty();
     const std::size_t at = per_vertex ? with_uvs_->polygons.corners()[corner] : of_corner[corner];
     const std::vector<double>& uvs = per_vertex ? with_uvs_->uvs : values;
-    // Faces without UVs are beside those with them, and a primitive has one of each.
+    // In glTF faces have UVs or none together: those without any here have the same.
     if (std::isnan(uvs[2 * at])) return {};
     return {uvs[2 * at], 1 - uvs[2 * at + 1]};
   }

@@ -48,7 +48,8 @@ struct CornerUvs {
 struct Statement {
   std::uint64_t polygon = 0;  ///< it stands before this one
   std::string text;           ///< as in the file, without the line end; in UTF-8
-  std::string bytes = {};     ///< in the file, of a name in another encoding that other files have
+  std::string bytes = {};     ///< as in the file, where that is no UTF-8 and the name is one of
+                              ///< other files
   bool leads_on = false;      ///< names in it are those of files beside the output
 
   const std::string& in_file() const { return bytes.empty() ? text : bytes; }
@@ -90,6 +91,11 @@ enum class Content {
   kSomeUvs,  ///< the same, and corners of OBJ without UVs have some that are no numbers
   kAll       ///< both
 };
+
+/// Whether a command needs what is neither positions, polygons nor UVs.
+constexpr bool wants_attributes(Content content) {
+  return content == Content::kSurface || content == Content::kAll;
+}
 
 /// The format that the extension of `path` names, in any case. Throws Failure for others.
 MeshFormat format_of(const std::string& path);

@@ -279,7 +279,7 @@ std::vector<std::string> MaterialLibraries::sources() const {
 std::string MaterialLibraries::text(const std::vector<BakedTexture>& baked) const {
   std::string text = "# Textures by beltrami, for the UVs of the model beside\n";
   for (const Material& material : materials_) {
-    if (material.library.empty()) continue;
+    if (material.library.empty()) continue;  // of its name alone there is nothing to write
     text += "newmtl " + material.bytes + "\n";
     for (const Line& line : material.lines) {
       const std::string own = slot(material, line);

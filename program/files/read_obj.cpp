@@ -43,9 +43,7 @@ class ObjReader {
 
  private:
   bool wants_uvs() const { return content_ != Content::kSurface; }
-  bool wants_attributes() const {
-    return content_ == Content::kSurface || content_ == Content::kAll;
-  }
+  bool wants_attributes() const { return cli::wants_attributes(content_); }
 
   void read_statement() {
     cursor_.skip_blanks();

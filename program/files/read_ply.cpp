@@ -165,7 +165,7 @@ class PlyReader {
   /// A column for the property, where columns are kept.
   Target keep(const PlyProperty& property, std::vector<Column>& columns) const {
     Target target{&property, -1, -1};
-    if (content_ == Content::kUvs || content_ == Content::kSomeUvs) return target;
+    if (!wants_attributes(content_)) return target;
     target.column = static_cast<int>(columns.size());
     columns.emplace_back(property.name, property.type, property.count_type.has_value());
     return target;

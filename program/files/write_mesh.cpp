@@ -64,8 +64,9 @@ std::vector<std::string> not_kept(const MeshFile& mesh, const std::string& path)
   }
   const MeshFormat format = format_of(path);
   if (format == MeshFormat::kGltf) return found;  // write_gltf says the rest
-  if (mesh.gltf)
+  if (mesh.gltf) {
     found.emplace_back("nodes, materials, textures, animations and attributes of vertices of glTF");
+  }
   const bool ply = format == MeshFormat::kPly;
   for (std::string& what : ply ? not_in_ply(mesh, path) : not_in_obj(mesh, path)) {
     found.push_back(std::move(what));

@@ -58,16 +58,22 @@ Session open(const beltrami_surface& header, const Options& options, const Loade
                  ground, chart_options(options), options.float32, work.part(0.2, 1));
 }
 
-/// Integers of the caller below a number. Throws Error INDEX_OUT_OF_RANGE.
-std::vector<Index> read_indices(const beltrami_buffer* buffer, std::uint64_t count, int components,
-                                std::uint64_t end, const char* what) {
+/// Integers of the caller, no more than there are indices.
+std::vector<std::uint64_t> read_many(const beltrami_buffer* buffer, std::uint64_t count,
+                                     int components, const char* what) {
   if (count == 0) return {};
   if (buffer == nullptr) throw Error(Fault::kInvalidArgument, std::string(what) + " are NULL");
   if (count > static_cast<std::uint64_t>(std::numeric_limits<Index>::max())) {
     throw Error(Fault::kInvalidArgument, std::string("there are more than 2^31 - 1 ") + what);
   }
+  return read_integers(*buffer, count, components, what, Work(1));
+}
+
+/// Integers of the caller below a number. Throws Error INDEX_OUT_OF_RANGE.
+std::vector<Index> read_indices(const beltrami_buffer* buffer, std::uint64_t count, int components,
+                                std::uint64_t end, const char* what) {
   std::vector<Index> indices;
-  for (const std::uint64_t i : read_integers(*buffer, count, components, what, Work(1))) {
+  for (const std::uint64_t i : read_many(buffer, count, components, what)) {
     if (i >= end) {
       throw Error(Fault::kIndexOutOfRange, std::string("one of the ") + what + " is " +
                                                std::to_string(i) + ": there are " +
@@ -222,12 +228,10 @@ void EditSession::select(const beltrami_buffer* faces, std::uint64_t count) {
 }
 
 std::vector<Index> EditSession::read_charts(const beltrami_buffer* charts, std::uint64_t count) {
-  if (count == 0) return {};
-  if (charts == nullptr) throw Error(Fault::kInvalidArgument, "charts are NULL");
   std::vector<Index> ids;
   // No chart has the greatest number: what is above it is none either.
   constexpr std::uint64_t kNoChart = std::numeric_limits<Index>::max();
-  for (const std::uint64_t id : read_integers(*charts, count, 1, "charts", Work(1))) {
+  for (const std::uint64_t id : read_many(charts, count, 1, "charts")) {
     ids.push_back(static_cast<Index>(std::min(id, kNoChart)));
   }
   return ids;

@@ -162,7 +162,7 @@ std::vector<Index> weld(const std::vector<Vec3>& positions, double distance, con
     poll();
     greatest = std::max(greatest, p.cwiseAbs().maxCoeff());
   }
-  // Half of the least number is 0.
+  // A part of the least number rounds to 0, and cells would have no size.
   const bool has_cells = distance > std::ldexp(greatest, -50) && distance / kReach > 0;
   if (has_cells) return weld_near(positions, distance, work);
   return weld_equal(positions, PointTable(positions, work), work);

@@ -44,6 +44,11 @@ class Collector {
   void stack(const std::vector<StackedFace>& stacked);
 
  private:
+  /// Notes a UV vertex of a vertex of the input, if it has none.
+  void note(Index vertex, Index uv) {
+    if (uv_of_[vertex] == kNone) uv_of_[vertex] = uv;
+  }
+
   /// The UV vertices of the polygon that a face is a part of, by the input's vertices.
   std::map<Index, Index> corners_of_polygon(Index face) const;
 
@@ -86,8 +91,7 @@ void Collector::add(const AtlasChart& part, const std::vector<Vec2>& uvs) {
       const int corner = part.input_corner(admitted_, f, k);
       const Index uv = place[chart.mesh.faces[f][k]];
       atlas_.faces[input][corner] = uv;
-      Index& known = uv_of_[faces_[input][corner]];
-      if (known == kNone) known = uv;
+      note(faces_[input][corner], uv);
     }
   }
   atlas_.charts.push_back(info);
@@ -148,8 +152,7 @@ void Collector::share() {
       for (int j = 0; j < 3; ++j) {
         if (admitted_.welded(faces_[first][j]) != admitted_.welded(faces_[copy][k])) continue;
         atlas_.faces[copy][k] = atlas_.faces[first][j];
-        Index& known = uv_of_[faces_[copy][k]];
-        if (known == kNone) known = atlas_.faces[copy][k];
+        note(faces_[copy][k], atlas_.faces[copy][k]);
       }
     }
   }
@@ -168,8 +171,7 @@ void Collector::stack(const std::vector<StackedFace>& stacked) {
       const Index on = atlas_.faces[face.on][face.corner[k]];
       const auto [known, is_new] = own.try_emplace({vertex, on}, size_of(atlas_.uvs));
       atlas_.faces[face.face][k] = known->second;
-      Index& known_uv = uv_of_[faces_[face.face][k]];
-      if (known_uv == kNone) known_uv = known->second;
+      note(faces_[face.face][k], known->second);
       if (!is_new) continue;
       const Vec2 place = atlas_.uvs[on];
       atlas_.uvs.push_back(place);

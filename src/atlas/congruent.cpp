@@ -1,6 +1,6 @@
 #include "atlas/congruent.h"
 
-#include <Eigen/SVD>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -135,34 +135,25 @@ class Laying {
   }
 
   /// Whether one motion brings all vertices to where they are laid: edges of the same lengths may
-  /// be bent otherwise (Kabsch 1976).
+  /// be bent otherwise (Umeyama 1991).
   bool moves_rigidly(bool reflected) {
     const Surface &from = from_.surface, &to = to_.surface;
-    std::vector<std::pair<Vec3, Vec3>> pairs(from.positions.size(), {Vec3::Zero(), Vec3::Zero()});
+    Eigen::Matrix3Xd places = Eigen::Matrix3Xd::Zero(3, size_of(from.positions)), onto = places;
     for (Index h = 0; h < size_of(onto_); ++h) {
       poll_();
       const Index v = from.origin(h), w = reflected ? to.target(onto_[h]) : to.origin(onto_[h]);
-      pairs[v] = {from.positions[v], unit_ * to.positions[w]};
+      places.col(v) = from.positions[v];
+      onto.col(v) = unit_ * to.positions[w];
     }
-    Vec3 middle = Vec3::Zero(), other = Vec3::Zero();
-    for (const auto& [p, q] : pairs) {
-      middle += p / static_cast<double>(pairs.size());
-      other += q / static_cast<double>(pairs.size());
-    }
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    for (const auto& [p, q] : pairs) covariance += (q - other) * (p - middle).transpose();
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
-                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
-    if ((turn.determinant() < 0) != reflected) {
-      Eigen::Matrix3d other_side = svd.matrixU();
-      other_side.col(2) *= -1;
-      turn = other_side * svd.matrixV().transpose();
-    }
-    return std::all_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+    if (reflected) places.row(0) *= -1;
+    const Eigen::Matrix4d motion = Eigen::umeyama(places, onto, false);
+    const Eigen::Matrix3d turn = motion.topLeftCorner<3, 3>();
+    const Vec3 shift = motion.topRightCorner<3, 1>();
+    for (Index v = 0; v < places.cols(); ++v) {
       poll_();
-      return (turn * (pair.first - middle) - (pair.second - other)).norm() <= kSameLength;
-    });
+      if (!((turn * places.col(v) + shift - onto.col(v)).norm() <= kSameLength)) return false;
+    }
+    return true;
   }
 
   const SurfacePiece& from_;
@@ -199,6 +190,7 @@ std::vector<Index> first_congruent(const std::vector<SurfacePiece>& pieces) {
     const Measures own = measures_of(pieces[p]);
     std::multimap<double, First>& kind = kinds[own.counts];  // by their areas
     std::vector<Index> alike;
+    // A little further on either side than is near.
     auto at = kind.lower_bound(own.area * (1 - 2 * kSameLength));
     for (; at != kind.end() && at->first <= own.area * (1 + 2 * kSameLength); ++at) {
       const bool is_alike = is_near(own.area, at->first) && is_near(own.edges, at->second.edges);

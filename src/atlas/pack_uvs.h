@@ -51,9 +51,9 @@ struct PackedUvs {
 /// or hang together with no others, are no charts: unless they are to stay, corners of theirs that
 /// are in no chart become points of the first one. With `float32` in single-precision numbers. With
 /// charts that stay and no texels per unit, the others get the density of those. Throws Error
-/// INVALID_ARGUMENT, with the face, where faces of a chart are to stay on different pages or beyond
-/// [0, 1]^2, NO_ROOM where charts do not fit, and ZERO_AREA where there are none. Precondition:
-/// finite, indices in range.
+/// INVALID_ARGUMENT, with the face of `mesh`, which the sentence leaves to the caller, where faces
+/// of a chart are to stay on different pages or beyond [0, 1]^2, NO_ROOM where charts do not fit,
+/// and ZERO_AREA where there are none. Precondition: finite, indices in range.
 PackedUvs pack_uvs(UvMesh mesh, const PackOptions& options, bool float32, const Work& work);
 
 }  // namespace beltrami

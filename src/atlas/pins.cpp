@@ -1,11 +1,12 @@
 #include "atlas/pins.h"
-#include "base/interrupt.h"
 
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
 #include <utility>
+
+#include "base/interrupt.h"
 
 namespace beltrami {
 namespace {

@@ -22,7 +22,7 @@ struct Pin {
   Index of_caller;  ///< polygon: that corner, as the caller counts
   PinKind kind = PinKind::kPoint;
   Vec2 along = Vec2::Zero();  ///< of kLine: its direction
-  Vec2 given = Vec2::Zero();  ///< as the caller gave it: of what a kind does not hold, too
+  Vec2 given = Vec2::Zero();  ///< `uv` as the caller gave it: kinds zero what they do not hold
 };
 
 /// A pin of a vertex of a chart.

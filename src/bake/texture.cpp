@@ -49,7 +49,7 @@ inline int texel_at(double place, int count, Beyond beyond) {
   if (beyond == Beyond::kClamp) return place > 0 ? count - 1 : 0;
   const double period = beyond == Beyond::kRepeat ? size : 2 * size;
   const double first = place - period * std::floor(place / period);
-  if (!(first >= 0)) return 0;  // no double holds it, or the place itself
+  if (!(first >= 0)) return 0;  // it is no number: the place is too great for a double
   // Rounding of a great number may leave the period.
   const auto texel = static_cast<int>(std::clamp(first, 0.0, period - 1));
   return texel < count ? texel : 2 * count - 1 - texel;

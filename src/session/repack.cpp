@@ -42,6 +42,7 @@ class Repacker {
  private:
   Index page_of(const SessionChart& chart) const;
   UvMesh mesh() const;
+  PackedUvs pack(const PackOptions& options, const Work& work) const;
   void take_off(std::size_t c, UvMesh& mesh) const;
   void lay(Index c);
   void take(Index c, const PackedUvs& packed);
@@ -167,19 +168,22 @@ void Repacker::lay(Index c) {
   chart.energy = other.energy;
 }
 
+/// Packs the mesh. Failures name the face as the caller does.
+PackedUvs Repacker::pack(const PackOptions& options, const Work& work) const {
+  try {
+    return pack_uvs(mesh(), options, session_.float32_, work);
+  } catch (const Error& error) {
+    if (error.element().kind != ElementKind::kFace) throw;
+    const Ground& ground = session_.ground_;
+    const auto own = static_cast<Index>(error.element().index);
+    const Index face = ground.name_of(ground.admitted.input_face[own]);
+    throw Error(error.fault(), "face " + std::to_string(face) + ": " + error.what(),
+                Element::face(static_cast<std::uint64_t>(face)));
+  }
+}
+
 Outcome Repacker::run(PackOptions options, const Work& work) {
-  const PackedUvs packed = [&] {
-    try {
-      return pack_uvs(mesh(), options, session_.float32_, work);
-    } catch (const Error& error) {
-      if (error.element().kind != ElementKind::kFace) throw;
-      const Ground& ground = session_.ground_;
-      const auto own = static_cast<Index>(error.element().index);
-      const Index face = ground.name_of(ground.admitted.input_face[own]);
-      throw Error(error.fault(), "face " + std::to_string(face) + ": " + error.what(),
-                  Element::face(static_cast<std::uint64_t>(face)));
-    }
-  }();
+  const PackedUvs packed = pack(options, work);
   for (Index c = 0; c < size_of(next_.charts); ++c) {
     if (moves_[c] && on_[c] == kNone) take(c, packed);
   }

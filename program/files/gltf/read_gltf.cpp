@@ -253,7 +253,7 @@ MeshFile read_gltf(std::string_view bytes, const std::string& path, Content cont
   MeshFile file;
   std::uint64_t size = bytes.size();
   for (const std::string& buffer : model->document.buffers) size += buffer.size();
-  gltf::Reader(file, *model, size).read(content == Content::kSurface || content == Content::kAll);
+  gltf::Reader(file, *model, size).read(wants_attributes(content));
   file.not_kept = model->document.not_kept;
   file.gltf = model;
   if (content == Content::kSurface) return file;

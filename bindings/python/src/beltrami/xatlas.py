@@ -140,8 +140,7 @@ class Atlas:
         if uvs is not None:
             uvs = _arrays.coordinates(shaped("uvs", uvs, 2, len(points)))
         # The arrays are the caller's to fill anew before `generate`.
-        copies = (points.copy(), faces.copy(), None if uvs is None else uvs.copy())
-        self._add(AddedMesh(*copies))
+        self._add(AddedMesh(points.copy(), faces.copy(), None if uvs is None else uvs.copy()))
 
     def add_uv_mesh(
         self,
